@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,8 +31,12 @@ def pair(value: Any) -> Pair:
 
 def two_product(x: float | Array, y: float | Array) -> tuple[Array, Array]:
     """Return x * y and its rounding error, exactly (Dekker)."""
+    return _product(x, y, _halves(x), _halves(y))
+
+
+def _product(x: float | Array, y: float | Array, of_x: _Halves, of_y: _Halves) -> _Halves:
     product: Array = np.multiply(x, y)
-    (x_high, x_low), (y_high, y_low) = _halves(x), _halves(y)
+    (x_high, x_low), (y_high, y_low) = of_x, of_y
     error = x_high * y_high
     error = error - product
     error += x_high * y_low
@@ -40,7 +45,10 @@ def two_product(x: float | Array, y: float | Array) -> tuple[Array, Array]:
     return product, error
 
 
-def _halves(x: float | Array) -> tuple[Array, Array]:
+_Halves = tuple[Array, Array]
+
+
+def _halves(x: float | Array) -> _Halves:
     """Return numbers as sums of two numbers with 26 bits."""
     bits = np.asarray(x, dtype=np.float64).view(np.int64)
     high: Array = ((bits + (1 << 26)) & -(1 << 27)).view(np.float64)
@@ -70,6 +78,10 @@ class DoubleDouble:
     def scaled(self, power: float) -> DoubleDouble:
         """Return the numbers times a power of two, exactly."""
         return DoubleDouble(self.high * power, self.low * power)
+
+    @cached_property
+    def _high_halves(self) -> _Halves:
+        return _halves(self.high)
 
     @staticmethod
     def _like(x: DoubleDouble | float) -> DoubleDouble:
@@ -101,7 +113,7 @@ class DoubleDouble:
         if isinstance(other, float | int) and abs(math.frexp(other)[0]) == 0.5:
             return self.scaled(other)
         other = self._like(other)
-        high, low = two_product(self.high, other.high)
+        high, low = _product(self.high, other.high, self._high_halves, other._high_halves)
         low += self.high * other.low
         low += self.low * other.high
         return _renormalised(high, low)
@@ -113,7 +125,7 @@ class DoubleDouble:
             return self.scaled(1 / other)
         other = self._like(other)
         high = self.high / other.high
-        product, rest = two_product(high, other.high)
+        product, rest = _product(high, other.high, _halves(high), other._high_halves)
         rest = (self.high - product) - rest
         rest += self.low
         rest -= high * other.low

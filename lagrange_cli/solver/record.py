@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -109,22 +109,10 @@ class Solution:
 
     @cached_property
     def path(self) -> str | None:
-        """Path of the figure axis: `cusped`, `looping` or `wavy`; None if there is no such path.
+        """Path of the figure axis: `cusped`, `looping` or `wavy`; None if there is no such path."""
+        return next((word for word, holds in path_words(self.facts, self) if holds), None)
 
-        The precession stops at u1 (a cusp), between u1 and u2 (a loop), or nowhere.
-        """
-        facts = self.facts
-        if facts.plane or facts.steady:
-            return None
-        if facts.released:
-            return "cusped"
-        stops_at_pole = facts.over_top or facts.separatrix  # where beta - b u1 = 0 without a stop
-        at_u1 = 1 if stops_at_pole or not facts.spin else self._precession_at("u1")
-        if not at_u1:
-            return "cusped"
-        return "looping" if at_u1 < 0 < self._precession_at("u2") else "wavy"
-
-    def _precession_at(self, u: str) -> int:
+    def precession_at(self, u: str) -> int:
         """Return the sign of b (beta - b u), the precession rate at u1 or u2 relative to r0."""
 
         def value(digits: int) -> arb:
@@ -197,26 +185,41 @@ def _number(motion: Solution, name: str, digits: int | None) -> Rounded | None:
     return None if name == "psidot0" else motion.number(name, digits)
 
 
-FAST_WORDS = "pseudo-regular precession"
-"""The remark on a fast top; in a record, numbers follow."""
+def path_words(facts: Any, of: Any) -> Iterator[tuple[str, Any]]:
+    """Yield paths of the axis, each with its condition: a bool, or a mask for many motions.
+
+    The first one whose condition holds is the path.  The precession stops at u1 (a cusp), between
+    u1 and u2 (a loop), or nowhere.
+    """
+    if facts.plane or facts.steady:
+        return
+    yield "cusped", facts.released
+    yield "wavy", facts.spin == 0
+    yield "wavy", facts.over_top or facts.separatrix  # where beta - b u1 = 0 without a stop
+    at_u1 = of.precession_at("u1")
+    yield "cusped", at_u1 == 0
+    yield "wavy", at_u1 > 0
+    yield "looping", of.precession_at("u2") > 0
+    yield "wavy", True
+
+
+_FAST_WORDS = "pseudo-regular precession"
+
+
+def remark_words(facts: Any) -> Iterator[tuple[str, Any]]:
+    """Yield remarks, each with its condition, as `path_words`; numbers follow if a top is fast."""
+    if facts.vertical:
+        yield "only phi - psi is defined; stable", facts.pole < 0
+        yield "only phi + psi is defined; stable (lambda = b^2/2a >= 1)", facts.stable
+        yield "only phi + psi is defined; unstable (lambda = b^2/2a < 1)", True
+    yield "rises to the vertical in infinite time", facts.separatrix
+    yield _FAST_WORDS, facts.fast
 
 
 def remark_of(motion: Solution, units: Units = DEGREES) -> str | None:
     """Return a line on special properties of a motion."""
-    facts = motion.facts
-    if facts.vertical:
-        return vertical_remark(facts.regime, facts.stable)
-    if facts.separatrix:
-        return "rises to the vertical in infinite time"
-    return _fast_remark(motion, units.angle) if facts.fast else None
-
-
-def vertical_remark(regime: Regime, stable: bool) -> str:
-    """Return the remark on an upright or hanging top."""
-    if regime is Regime.HANGING:
-        return "only phi - psi is defined; stable"
-    word, sign = ("stable", ">=") if stable else ("unstable", "<")
-    return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
+    words = next((words for words, holds in remark_words(motion.facts) if holds), None)
+    return _fast_remark(motion, units.angle) if words == _FAST_WORDS else words
 
 
 def _fast_remark(motion: Solution, unit: str) -> str:
@@ -236,7 +239,7 @@ def _fast_remark(motion: Solution, unit: str) -> str:
     parts = decided(excess, motion.facts.equal)
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
-        f"{FAST_WORDS}: nutates by {short(f'nutation_{unit}')} {unit} "
+        f"{_FAST_WORDS}: nutates by {short(f'nutation_{unit}')} {unit} "
         f"in {short('T_nutation')} time; the mean rate is {where} mgs/(C r0) = "
         f"{short('precession_rate_elementary')} rad/time"
     )

@@ -9,36 +9,49 @@ in pairs of doubles computes the others.  Equation numbers are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ellipe, ellipeinc, ellipkinc, ellipkm1, elliprf
 
-from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, atan2, best, choose, lifted, size_of, sqrt
+from ..arithmetic.bounded import (
+    EPS,
+    Bounded,
+    atan2,
+    best,
+    choose,
+    known,
+    lifted,
+    relative_errors,
+    root_of,
+    size_of,
+    sqrt,
+    unit_of,
+)
 from ..arithmetic.formulas import evaluated
 from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
-from ..solver.facts import Regime
+from ..solver.facts import FAST, Regime
 from ..solver.keys import LINES, exists
-from .tops import UNKNOWN, TopArrays, pi_of
+from .tops import INPUTS, UNKNOWN, TopArrays, pi_of
 
 GOOD = 1e-13
 """Relative error up to which a number is trusted, of a cosine absolute."""
 _FINE = 0.9 * GOOD
 """Relative error up to which a mean rate is good enough for what is computed from it."""
-_NEWTON_STEPS, _STEPS_IN_PAIRS = 100, 3
+_RELEASED, _FROM_PAIRS = 64 * EPS, 8 * EPS
+"""Relative errors up to which the gaps of tops are good enough, released ones and others."""
+_NEWTON_STEPS, _STEPS_IN_PAIRS, _MEAN_STEPS = 100, 2, 11
 
 
-def _relative(x: Bounded) -> Array:
-    """Return relative errors; 0 for an exact number."""
-    return np.where(x.error == 0, 0.0, x.error / x.size)
-
-
-def _by_relative_errors(value: Array, *parts: Bounded, least: Any = 16.0) -> Bounded:
+def _by_relative_errors(value: Array, *parts: Bounded, least: float = 16.0) -> Bounded:
     """Return numbers whose relative error is at most twice the sum of those of some parts."""
-    error = least * EPS + 2 * sum(map(_relative, parts))
-    return Bounded(value, error * abs(value))
+    relative = least * EPS + 2 * sum(map(relative_errors, parts))
+    if np.ndim(relative):
+        return Bounded(value, relative * abs(value), positive=True)
+    return Bounded(value, None, relative, positive=True)
 
 
 def agm(one: float, k: Bounded) -> Bounded:
@@ -47,19 +60,26 @@ def agm(one: float, k: Bounded) -> Bounded:
     return _by_relative_errors(np.pi / 2 / ellipkm1(k.value * k.value), k)
 
 
+def complete_E(k_prime: Bounded) -> Bounded:
+    """Return E, which is at least 1; its derivative by k' is at most 1."""
+    k_prime = k_prime.rounded()
+    return _by_relative_errors(ellipe(1 - k_prime.value * k_prime.value), k_prime)
+
+
 def nome_of(k: Bounded, k_prime: Bounded) -> Bounded:
     """Return the nome exp(-pi K'/K); its derivatives by log k and log k' are at most 2.
 
-    The exponential loses log(1/q) digits.  Small nomes are a series instead (DLMF 19.5.5).
+    The exponential loses log(1/q) digits.  Small nomes are a series instead (DLMF 19.5.5).  For the
+    others, the exponent is at most pi.
     """
     k, k_prime = k.rounded(), k_prime.rounded()
     x, y = k.value, k_prime.value
-    exponent = np.pi * ellipkm1(x * x) / ellipkm1(y * y)
     part = x * x / (2 * (1 + y) * (1 + np.sqrt(y)) ** 2)  # (1 - sqrt(k'))/(1 + sqrt(k'))/2
     fourth = part**4
     series = part * (1 + fourth * (2 + fourth * (15 + fourth * 150)))
+    exponent = np.pi * ellipkm1(x * x) / ellipkm1(y * y)
     value = np.where(x < y, series, np.exp(-exponent))
-    return _by_relative_errors(value, k, k_prime, least=16 + 16 * np.where(x < y, 0.0, exponent))
+    return _by_relative_errors(value, k, k_prime, least=16 + 16 * np.pi)
 
 
 def integral_F(sine: Bounded, cosine: Bounded, k: Bounded) -> Bounded:
@@ -74,7 +94,7 @@ FUNCTIONS: dict[str, Any] = {
     "abs": abs,
     "agm": agm,
     "atan2": atan2,
-    "complete_E": lifted(lambda k_prime: ellipe(1 - k_prime * k_prime), lambda _: 1.0),
+    "complete_E": complete_E,
     "cos": itemgetter(1),  # of theta0
     "ellint_E": lifted(
         lambda phi, k: ellipeinc(phi, k * k),
@@ -89,42 +109,11 @@ FUNCTIONS: dict[str, Any] = {
     "square": lambda x: x * x,
 }
 """The functions of formulas."""
-
-
-class GroupFacts(dict[str, Any]):
-    """The facts of tops of one group, as those of `solver.facts`; some are masks.
-
-    No number is certain if the axis of a top with initial rates passes over a pole.
-    """
-
-    separatrix = False
-
-    def __init__(self, regime: Regime | None) -> None:
-        super().__init__(FUNCTIONS)
-        self.regime = regime
-        self.pole = {Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0)  # type: ignore
-        self.vertical = bool(self.pole)
-        self.steady = regime not in {Regime.REGULAR, Regime.NO_SPIN, None}
-        self.nutates, self.released = not self.steady, regime not in {Regime.STEADY, None}
-        self.plane = regime is Regime.NO_SPIN
-        self.off_poles = self.half_off_pole = not self.plane
-
-    a = property(lambda self: self["a"].doubles)
-    spin = property(lambda self: self["r0"].doubles)
-    moves = property(lambda self: self.nutates or (self.a != 0) | (self.spin != 0))
-
-    @property
-    def turning(self) -> Any:
-        """1 for a start at u1, -1 at u2, 0 between."""
-        if self.regime is not None:
-            return int(self.nutates)
-        at_u1 = self["rise"].doubles == 0
-        return np.where(self["thetadot0"].doubles == 0, np.where(at_u1, 1, -1), 0)
-
-    def has_steady_rate(self, _: str) -> Mask:
-        """Return which tops may have a rate of steady precession, uncertain at 90 degrees."""
-        found: Mask = ~self["square_of_steady"].surely(-1)
-        return found
+_START = frozenset(
+    "m A C s g r0 thetadot0 psidot0 theta0 above_u0 below_u0 u0 a b momentum momenta "
+    "beta_minus_b beta_plus_b".split()
+)
+"""The numbers of any start that are rounded from pairs of doubles, beside the gaps."""
 
 
 class Gaps(NamedTuple):
@@ -139,37 +128,67 @@ class Gaps(NamedTuple):
     below_u2: Bounded
     a_above_u3: Bounded  # a (u3 - 1)
 
-    def rounded(self) -> Gaps:
-        """Return the gaps as doubles."""
-        return Gaps(*(x.rounded() for x in self))
+
+def _known(x: Bounded, relative: float) -> Bounded:
+    """Return numbers that are not negative, with one bound of their relative errors."""
+    x.positive = True
+    return known(x, relative)
 
 
-class ArrayNumbers(GroupFacts):
+class ArrayNumbers(dict[str, Any]):
     """The numbers of many motions by name, as bounded numbers; each is computed on first use.
 
     A name is that of a line of `keys`, of an input, or of a property of this class.  Angles are in
-    radians.
+    radians.  Facts are attributes with the names of `solver.facts`; some are masks.  No number is
+    certain if the axis of a top with initial rates passes over a pole.
     """
 
+    separatrix = over_top = False
+
     def __init__(self, tops: TopArrays, regime: Regime | None, *, pairs: bool = False) -> None:
-        """Take tops of one group, to be computed in doubles or in pairs of doubles."""
-        super().__init__(regime)
-        self.tops, self.pairs, self._has = tops, pairs, dict[str, Any]()
-        for name in tops.inputs:
+        """Take tops of one group, to be computed in doubles or in pairs of doubles.
+
+        Those with any start have their gaps from pairs of doubles in both cases.
+        """
+        super().__init__(FUNCTIONS)
+        self.tops, self.regime, self.pairs, self._has = tops, regime, pairs, dict[str, Any]()
+        self.pole = {Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0)  # type: ignore
+        self.vertical = bool(self.pole)
+        self.steady = regime not in {Regime.REGULAR, Regime.NO_SPIN, None}
+        self.nutates, self.released = not self.steady, regime not in {Regime.STEADY, None}
+        self.plane = regime is Regime.NO_SPIN
+        self.off_poles = self.half_off_pole = not self.plane
+        self["pi"] = pi_of(pairs=pairs)
+        self.finer = None if pairs or regime else ArrayNumbers(tops, regime, pairs=True)
+        if self.finer:
+            return
+        for name in INPUTS:
             if name != "psidot0" or regime is not Regime.STEADY:
                 self[name] = tops.number(name, pairs=pairs)
-        sine, cosine = tops.tilt.half(pairs=pairs)
-        self["theta0"] = 2.0 * (sine * cosine), (cosine - sine) * (cosine + sine)
-        self["above_u0"], self["below_u0"] = 2.0 * (sine * sine), 2.0 * (cosine * cosine)
-        self["pi"] = pi_of(pairs=pairs)
+        self.update(tops.tilt.start(pairs=pairs))
 
     def __missing__(self, name: str) -> Any:
-        if name in LINES:
+        if self.finer and name in _START:
+            found = self.finer[name]
+            value = tuple(x.rounded() for x in found) if type(found) is tuple else found.rounded()
+        elif name in LINES:
             value = evaluated(LINES[name].evaluated, self)
         else:
             value = getattr(self["gaps"], name) if name in Gaps._fields else getattr(self, name)
         self[name] = value
         return value
+
+    def some(self, rows: Any) -> ArrayNumbers:
+        """Return the numbers of some of the motions; those that are known are kept."""
+        found = copy(self)
+        found.tops, found._has = self.tops.part(rows), {}
+        for name, x in self.items():
+            if isinstance(x, Bounded):
+                found[name] = x[rows]
+            elif isinstance(x, tuple):
+                parts = (y[rows] for y in x)
+                found[name] = Gaps(*parts) if isinstance(x, Gaps) else tuple(parts)
+        return found
 
     def has(self, name: str) -> Any:
         """Return which motions have a number."""
@@ -181,6 +200,27 @@ class ArrayNumbers(GroupFacts):
         """Return which numbers are certainly 0."""
         return (self[name].doubles == 0) & (self[name].error == 0)
 
+    # facts
+
+    a = property(lambda self: self["a"].doubles)
+    spin = property(lambda self: self["r0"].doubles)
+    moves = property(lambda self: self.nutates or (self.a != 0) | (self.spin != 0))
+    stable = property(lambda self: self["b"].doubles ** 2 >= 2 * self.a)
+    fast = property(lambda self: self.regime is Regime.REGULAR and self["over_fast"].doubles >= 0)
+
+    @property
+    def turning(self) -> Any:
+        """1 for a start at u1, -1 at u2, 0 between."""
+        if self.regime is not None:
+            return int(self.nutates)
+        at_u1 = (self.finer or self)["rise"].doubles == 0
+        return np.where(self["thetadot0"].doubles == 0, np.where(at_u1, 1, -1), 0)
+
+    def has_steady_rate(self, _: str) -> Mask:
+        """Return which tops may have a rate of steady precession, uncertain at 90 degrees."""
+        found: Mask = ~self["square_of_steady"].surely(-1)
+        return found
+
     # the start
 
     @property
@@ -191,7 +231,7 @@ class ArrayNumbers(GroupFacts):
     @property
     def momentum(self) -> Any:
         """psi' sin^2(theta0) = beta - b u0 (4,5)."""
-        return self["psidot0"] * self["theta0"][0] * self["theta0"][0]
+        return self["psidot0"] * (self["theta0"][0] * self["theta0"][0])
 
     @property
     def beta_minus_b(self) -> Any:
@@ -202,6 +242,11 @@ class ArrayNumbers(GroupFacts):
     def beta_plus_b(self) -> Any:
         """beta + b."""
         return self["momentum"] + self["b"] * self["below_u0"]
+
+    @property
+    def over_fast(self) -> Any:
+        """b^2 less its least value in a pseudo-regular precession."""
+        return self["b"] * self["b"] - float(FAST) * self["a"]
 
     @property
     def square_of_steady(self) -> Any:
@@ -224,30 +269,40 @@ class ArrayNumbers(GroupFacts):
 
     @property
     def gaps(self) -> Gaps:
-        """The gaps of motions that nutate.
+        """The gaps of motions that nutate, or keep their tilt.
 
         The largest root X = a (u3 - u0) leaves a quadratic with a negative last coefficient, so
         that its discriminant is a sum.  Its smaller root is a quotient.  Distances to a pole are
-        differences, or quotients by f(1) = -(beta - b)^2 and f(-1) = -(beta + b)^2: the better one.
+        differences, or quotients by f(1) = -(beta - b)^2 and f(-1) = -(beta + b)^2.
         """
+        if self.finer:
+            return Gaps(*(_known(x.rounded(), _FROM_PAIRS) for x in self.finer["gaps"]))
+        a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
+        sine, zero = self["theta0"][0], Bounded(0.0, positive=True)
+        if self.steady:
+            around = self["psidot0"] * sine
+            far = self._root(around * around + self["square_of_steady"])
+            return Gaps(zero, zero, far, above, above, below, below, far - a * above)
+        if not self.released:
+            return self._gaps_of_any_start()
+        far = self._root(released_root(0.5 * (b * b) - a * u0, a * sine))
+        fall, square = a * (sine * sine) / far, b * b
+        above_u2, below_u2 = above + fall, square * below / (far + a * below)
+        a_above_u3 = square * above / above_u2
+        return Gaps(zero, fall, far, above, above_u2, below, below_u2, a_above_u3)
+
+    def _root(self, x: Bounded) -> Bounded:
+        return x if self.pairs else _known(x, _RELEASED)
+
+    def _gaps_of_any_start(self) -> Gaps:
         a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
         sine, momentum = self["theta0"][0], self["momentum"]
-        if self.steady:
-            around, zero = self["psidot0"] * sine, Bounded(0.0)
-            far = around * around + self["square_of_steady"]
-            return Gaps(zero, zero, far, above, above, below, below, far - a * above)
-        if self.released:
-            far = released_root(0.5 * b * b - a * u0, a * sine)
-            fall, a_above_u3 = a * sine * sine / far, far - a * above
-            a_above_u3 = best(a_above_u3, b * b * above / (above + fall))
-            below_u2 = best(below - fall, b * b * below / (far + a * below))
-            return Gaps(Bounded(0.0), fall, far, above, above + fall, below, below_u2, a_above_u3)
-        energy = self["thetadot0"] * self["thetadot0"] + momentum * self["psidot0"]
-        along = sine * self["thetadot0"]
+        around, along = self["psidot0"] * sine, sine * self["thetadot0"]
+        energy = self["thetadot0"] * self["thetadot0"] + around * around
         c0 = along * along
-        c1 = 2.0 * (b * momentum - u0 * energy) - a * sine * sine
-        c2 = 2.0 * a * u0 - energy - b * b
-        far = largest_root(c2, a * c1, a * (a * c0), self._above_all_roots(energy))
+        c1 = 2.0 * (b * momentum - u0 * energy) - a * (sine * sine)
+        c2 = 2.0 * (a * u0) - energy - b * b
+        far = largest_root(c2, a * c1, a * (a * c0))
         total, product = (c1 + a * c0 / far) / far, c0 / far
         larger = (abs(total) + sqrt(total * total + 4.0 * product)) * 0.5
         smaller = product / larger
@@ -256,15 +311,10 @@ class ArrayNumbers(GroupFacts):
         north, south = self["beta_minus_b"], self["beta_plus_b"]
         below_u1, above_u2 = below + rise, above + fall
         a_above_u3 = far - a * above
-        above_u1 = best(above - rise, north * north / (above_u2 * a_above_u3))
-        a_above_u3 = best(a_above_u3, north * north / (above_u1 * above_u2))
-        below_u2 = best(below - fall, south * south / (below_u1 * (far + a * below)))
+        above_u1 = best(above - rise, lambda: north * north / (above_u2 * a_above_u3))
+        a_above_u3 = best(a_above_u3, lambda: north * north / (above_u1 * above_u2))
+        below_u2 = best(below - fall, lambda: south * south / (below_u1 * (far + a * below)))
         return Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
-
-    def _above_all_roots(self, energy: Bounded) -> Array:
-        a, b = self["a"].doubles, self["b"].doubles
-        found: Array = energy.doubles + b * b + 2 * a
-        return found
 
     @property
     def roots(self) -> tuple[Bounded, Bounded]:
@@ -282,12 +332,14 @@ class ArrayNumbers(GroupFacts):
     @property
     def wide(self) -> Any:
         """a (u3 - u2)."""
-        return self["far"] + self["a"] * self["fall"]
+        return self["far"] if self.steady else self["far"] + self["a"] * self["fall"]
 
     @property
     def narrow(self) -> Any:
         """a (u3 - u1)."""
-        return self["far"] - self["a"] * self["rise"]
+        if self.regime is not None:
+            return self["far"]
+        return self["a_above_u3"] + self["a"] * self["above_u1"]
 
     @property
     def m_k(self) -> Bounded:
@@ -311,7 +363,7 @@ class ArrayNumbers(GroupFacts):
     def means(self) -> tuple[Bounded, Bounded]:
         """The mean rates of spin (6,3) and precession (7,3).
 
-        They are computed in doubles; in pairs, if the parts cancel.
+        If the parts cancel, those of any start are computed again in pairs of doubles.
         """
         r0 = self["r0"]
         if self.steady:
@@ -319,14 +371,17 @@ class ArrayNumbers(GroupFacts):
         if self.plane:  # a half turn at the bottom
             half_turn = self["pi"] / self["T_nutation"]
             return half_turn, half_turn
-        gaps, given = self["gaps"], (self["k_prime"], *self["momenta"])
-        south, north = mean_parts(gaps.rounded(), *(x.rounded() for x in given))
-        spin, precession = (r0 + south - north).rounded(), (south + north).rounded()
+        gaps = self["gaps"]
+        if self.released:  # at u1 without precession
+            south, north = mean_parts(gaps, self["k_prime"], gaps.rise, gaps.fall)
+            return r0 + self["b"] * (south - north), self["b"] * (south + north)
+        south, north = mean_parts(gaps, self["k_prime"], *self["momenta"])
+        spin, precession = r0 + south - north, south + north
+        if not self.finer:
+            return spin, precession
         lost = ~((spin.error <= _FINE * spin.size) & (precession.error <= _FINE * precession.size))
-        if self.pairs and (rows := np.flatnonzero(lost)).size:
-            some = Gaps(*(x[rows] for x in gaps))
-            south, north = mean_parts(some, *(x[rows] for x in given))
-            finer = r0[rows] + south - north, south + north
+        if (rows := np.flatnonzero(lost)).size:
+            finer = self.finer.some(rows)["means"]
             for x, exact in zip((spin, precession), finer, strict=True):
                 y = exact.rounded()
                 x.value[rows], x.error[rows] = y.value, y.error
@@ -339,22 +394,24 @@ class ArrayNumbers(GroupFacts):
 
     quarter = half
 
-    @property
-    def is_regular(self) -> Mask:
-        """Whether the roots are certainly apart."""
-        found: Mask = self["narrow"].surely(1) & self["height"].surely(1)
+    # texts
+
+    def precession_at(self, u: str) -> Array:
+        """Return the signs of b (beta - b u) at u1 or u2."""
+        found: Array = np.sign(self["b"].doubles) * np.sign(self["momenta"][u == "u2"].doubles)
         return found
 
-    @property
-    def path(self) -> tuple[Any, Any]:
-        """The path of the axis, and whether it is certain."""
+    def is_certain(self, text: str) -> Any:
+        """Return which texts are certain: the roots are apart, and beta - b is not 0."""
         if self.regime is not None:
-            return "cusped" if self.regime is Regime.REGULAR else None, True
-        sign, ends = np.sign(self["b"].doubles), self["momenta"]
-        looping = (sign * ends[0].doubles < 0) & (sign * ends[1].doubles > 0)
-        certain = [x.size > x.error for x in (*ends, self["beta_minus_b"])] + [self["is_regular"]]
-        words = np.array(["wavy", "looping"], dtype=object)
-        return words[looping.astype(int)], np.logical_and.reduce(certain)
+            return (
+                text != "remark"
+                or self.regime is not Regime.REGULAR
+                or self["over_fast"].is_not_0()
+            )
+        apart = self["narrow"].surely(1) & self["height"].surely(1)
+        signs = [self["beta_minus_b"], *(self["momenta"] if text == "path" else ())]
+        return np.logical_and.reduce([apart, *(x.is_not_0() for x in signs)])
 
 
 def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bounded]:
@@ -372,19 +429,22 @@ def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bou
     values, steps = _means(
         k_prime.value, [(d1.value, d2.value) for d1, d2 in ends], x.value, y.value
     )
-    unit = PAIR_EPS if isinstance(k_prime.value, DoubleDouble) else EPS
-    of_momenta = np.maximum(_relative(x), _relative(y))
+    unit, positive = unit_of(k_prime.value), x.positive and y.positive
+    of_momenta = np.maximum(relative_errors(x), relative_errors(y))
     mixed = np.flatnonzero(x.doubles * y.doubles < 0)
     found = []
     for (d1, d2), value in zip(ends, values, strict=True):
-        of_d = np.maximum(d1.error / d1.size, d2.error / d2.size)
-        rho = of_d + 2 * k_prime.error / k_prime.size + 10 * (steps + 1) * unit
+        rho = np.maximum(relative_errors(d1), relative_errors(d2)) + 2 * relative_errors(k_prime)
+        rho = rho + 10 * unit * ((_MEAN_STEPS if positive else steps) + 1)
+        if positive and not np.ndim(rho + of_momenta):
+            found.append(Bounded(value, None, rho + of_momenta, positive=True) * 0.5)
+            continue
         error = (rho + of_momenta) * size_of(value)
         if mixed.size:
             k, *d = (v.doubles[mixed] for v in (k_prime, d1, d2))
             sizes = (v.error[mixed] + rho[mixed] * v.size[mixed] for v in (x, y))
             error[mixed] = _means(k, [d], *sizes)[0][0]
-        found.append(Bounded(value, error) * 0.5)
+        found.append(Bounded(value, error, positive=positive) * 0.5)
     return found
 
 
@@ -394,46 +454,42 @@ def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any]
 
     It is Bulirsch's cel(k', p, x, y)/K (DLMF 19.2.11), p = k'^2 d2/d1, over d1.  Each step is
     Bartky's transformation (Bulirsch 1969), which keeps it and squares the distance of m from g.
+    A mean that needs too many steps is NaN.
     """
     close_to = 2.0**-52 if isinstance(k_prime, DoubleDouble) else 2.0**-26
     m, g, mc, states = 0.0 * k_prime + 1.0, k_prime, k_prime * k_prime, []
     for d1, d2 in ends:
         p = root_of(mc * d2 / d1)
         states.append((x / d1, y * mc / d1 / p, p))
-    values, going = [v for v, _, _ in states], np.ones(high(k_prime).shape, dtype=np.bool_)
+    values, going = [v * np.nan for v, _, _ in states], np.ones(size_of(k_prime).shape, np.bool_)
     steps = np.zeros(going.shape)
-    while going.any():
+    for _ in range(_MEAN_STEPS):
         product = m * g
         for i, (v, w, p) in enumerate(states):
             q = product / p
             states[i] = (v + w / p) * 0.5, (w + v * q) * 0.5, (p + q) * 0.5
-        still = going & (size_of(m - g) > close_to * high(m))
+        still = going & (size_of(m - g) > close_to * size_of(m))
         m, g = (m + g) * 0.5, root_of(product)
         steps += going
-        if (still != going).any():
+        if (done := going & ~still).any():
             pick = DoubleDouble.choose if isinstance(m, DoubleDouble) else np.where
             last = [(v * m + w) / (m + p) for v, w, p in states]
-            values = [pick(going, new, old) for new, old in zip(last, values, strict=True)]
+            values = [pick(done, new, old) for new, old in zip(last, values, strict=True)]
         going = still
+        if not going.any():
+            break
     return values, steps
 
 
-def high(x: Any) -> Any:
-    """Return a value as a double."""
-    return x.high if isinstance(x, DoubleDouble) else x
+def largest_root(c2: Bounded, c1: Bounded, c0: Bounded) -> Bounded:
+    """Return the largest root of X^3 + c2 X^2 + c1 X + c0 with c0 >= 0, which has three real ones.
 
-
-def root_of(x: Any) -> Any:
-    """Return the square root of a value."""
-    return x.sqrt() if isinstance(x, DoubleDouble) else np.sqrt(x)
-
-
-def largest_root(c2: Bounded, c1: Bounded, c0: Bounded, start: Array) -> Bounded:
-    """Return the largest root of X^3 + c2 X^2 + c1 X + c0 by Newton's method from above.
-
+    Newton's method descends to it from the larger root of X^2 + c2 X + c1, where the cubic is c0.
     If f' changes by at most 1 % within 2 |f/f'|, the root is within 1.01 |f/f'|.
     """
-    x, b2, b1, b0 = start, c2.doubles, c1.doubles, c0.doubles
+    b2, b1, b0 = c2.doubles, c1.doubles, c0.doubles
+    x = 0.5 * (np.sqrt(np.maximum(b2 * b2 - 4 * b1, 0.0)) - b2)
+    x = np.where(b2 < 0, x, np.maximum(x, b1 / np.minimum(-b2 - x, -1e-300))) * (1 + 2.0**-24)
     going = np.ones(x.shape, dtype=np.bool_)  # until the step of a top itself is small
     for _ in range(_NEWTON_STEPS):
         slope = (3 * x + 2 * b2) * x + b1
@@ -455,12 +511,20 @@ def largest_root(c2: Bounded, c1: Bounded, c0: Bounded, start: Array) -> Bounded
     error = (value.size + value.error) / slope
     changes = 2 * error * (6 * x + 2 * abs(b2) + 12 * error) + of_slope
     certain = (slope > 0) & (changes <= 0.01 * slope)
-    return Bounded(root, np.where(certain, 1.02 * error, np.inf))
+    return Bounded(root, np.where(certain, 1.02 * error, np.inf), positive=True)
 
 
 def released_root(half: Bounded, a_sine: Bounded) -> Bounded:
     """Return a (u3 - u0) after release from rest, where u0 is a root and X^2 - 2 half X - (a sin)^2
-    has the others."""
-    square = a_sine * a_sine
-    more = sqrt(half * half + square) + abs(half)
-    return choose(half.doubles >= 0, more, square / more)
+    has the others.
+
+    An error e of `half` makes the relative error e/r, r the root of its square and the other one; a
+    relative error of a sin counts twice at most.
+    """
+    square = (a_sine * a_sine).value
+    root = root_of(half.value * half.value + square)
+    more = root + abs(half.value)
+    pick: Any = DoubleDouble.choose if isinstance(root, DoubleDouble) else np.where
+    value = pick(half.doubles >= 0, more, square / more)
+    relative = half.error / size_of(root) + 2 * relative_errors(a_sine) + 6 * unit_of(root)
+    return Bounded(value, relative * size_of(value), positive=True)

@@ -31,8 +31,10 @@ from ..top.ranges import Points
 from ..top.units import DEGREES, RADIANS, Units
 from ..top.values import Value
 from .conditions import Condition, read_condition
-from .records import BLOCK_ROWS, RADIUS, check_keys, column_keys, records, with_radii
+from .records import RADIUS, check_keys, column_keys, records, with_radii
 
+BLOCK_ROWS = 4096
+"""Number of tops in a part, but for files of Parquet."""
 NumberedBlock = tuple[int, Product | TopsFile]
 """The number of a part, and the tops that it is made of."""
 
@@ -79,24 +81,26 @@ class Sweep(NamedTuple):
         number, block = numbered
         given = block.arrays(self.shared)
         keys = [*self.keys, *(x.key for x in self.where)]
-        columns, not_bodies = records(given, keys, are_bodies=self.is_body)
-        found = columns["error"]
-        failed = np.flatnonzero(found).tolist()
+        columns, errors, not_bodies = records(given, keys, are_bodies=self.is_body)
         if given.lines is not None:
-            found[failed] = [f"line {given.lines[row]}: {found[row]}" for row in failed]
-        counts = len(failed), found[failed[0]] if failed else "", not_bodies * (not self.is_body)
-        written: list[Any] = [*given.carried]
+            errors = {row: f"line {given.lines[row]}: {errors[row]}" for row in errors}
+        if "error" in columns:
+            columns["error"][[*errors]] = [*errors.values()]
+        first = errors[min(errors)] if errors else ""
+        counts = len(errors), first, not_bodies * (not self.is_body)
+        written, rows = list[Any](given.carried), given.size
         if self.where:
             kept = np.logical_and.reduce([x.holds(columns[x.key]) for x in self.where])
             columns = {key: column[kept] for key, column in columns.items()}
             written = [[*compress(column, kept)] for column in written]
+            rows = int(kept.sum())
         every = (columns[key] for key in self.keys)  # neighbouring columns of numbers as one array
         for are_numbers, run in groupby(every, lambda column: column.dtype == np.float64):
             some = [*run]
             written += [np.stack(some, axis=1)] if are_numbers else [x.tolist() for x in some]
         form = format_of(self.fmt)
         text = form.with_units(form.block(written, self.header), self._units())
-        return Part(number, text, given.size, columns["error"].size, *counts)
+        return Part(number, text, given.size, rows, *counts)
 
     def _units(self) -> dict[str, str]:
         """Return the units of keys and of their bounds."""

@@ -14,35 +14,34 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.bounded import EPS, Bounded
+from ..arithmetic.bounded import EPS, Bounded, choose
 from ..errors import LagtopError
 from ..files.tops import Tops
 from ..names import check_names
 from ..solver import keys as motion_record
-from ..solver.facts import FAST, Regime
+from ..solver.facts import Regime
 from ..solver.keys import LINES
-from ..solver.record import FAST_WORDS, record_in_range, vertical_remark
+from ..solver.record import path_words, record_in_range, remark_words
 from ..solver.solve import solve
 from ..top.units import DEGREES, Units, bare_name
 from .numbers import GOOD, ArrayNumbers
 from .results import ResultColumn, Results, read_inputs
-from .tops import TopArrays, top_arrays
+from .tops import INPUTS, TopArrays, top_arrays
 
 TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
 RADIUS = "_radius"
 """The end of the name of a bound."""
-_DEGREE = Bounded(180 / np.pi, EPS * 180 / np.pi)
+_TOGETHER = 1 << 13
+"""Number of tops computed together: their arrays take at most 14 MB."""
+_DEGREE = Bounded(180 / np.pi, None, EPS, positive=True)
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which no rounding error is lost."""
+_KEPT = 1 << 22
+"""Bytes: once such an array is freed, glibc keeps twice as many for the next arrays.  Otherwise it
+returns them to the system, and each block takes half as long again."""
 Rows = NDArray[np.intp]
-BLOCK_ROWS = 1 << 12
-"""Number of tops computed together, so that their arrays stay in the cache."""
-_MOST_ROWS = 8 * BLOCK_ROWS
-"""Most tops in a block of `sweep`: the few that need pairs of doubles are computed together."""
-_SHARE, _LEAST_ROWS = 110, 2048
-"""A top takes 1,100 bytes while it is computed: such a share of the tops times keys of a sweep
-takes 1.25 times its result."""
+Columns = dict[str, ResultColumn]
 
 
 def column_keys(units: Units = DEGREES) -> list[str]:
@@ -75,24 +74,13 @@ def sweep(
         raise LagtopError("sweep takes inputs by name: pass columns by name: sweep(**df)")
     chosen = with_radii(check_keys(keys, Units(radians)), radii=radii)
     flat, results, are_bodies = read_inputs(inputs)
-    size = math.prod(results.shape)
-    columns = _empty(chosen, size)
-    most = min(max(size // 8, BLOCK_ROWS), _MOST_ROWS)  # their columns are computed and copied
-    step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), most)
-    for first in range(0, max(size, 1), step):
-        rows = slice(first, min(first + step, size))
-        given = {name: x if isinstance(x, str) else x[rows] for name, x in flat.items()}
-        part, _ = records(Tops(rows.stop - first, given), chosen, are_bodies=are_bodies)
-        if part["error"].any():
-            columns.setdefault("error", np.full(size, None))
-        for key, column in columns.items():
-            column[rows] = part[key]
+    block = Tops(math.prod(results.shape), flat)
+    columns, errors, _ = records(block, chosen, are_bodies=are_bodies)
+    if errors:
+        columns.setdefault("error", np.full(block.size, None))
+        columns["error"][[*errors]] = [*errors.values()]
     results |= {key: x.reshape(results.shape) for key, x in columns.items()}
     return results
-
-
-def _empty(keys: Iterable[str], count: int) -> dict[str, ResultColumn]:
-    return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
 
 def check_keys(keys: Sequence[str] | None, units: Units = DEGREES) -> Sequence[str]:
@@ -111,59 +99,91 @@ def with_radii(keys: Sequence[str], *, radii: bool) -> list[str]:
 
 
 def records(
-    block: Tops, keys: Sequence[str], *, are_bodies: bool
-) -> tuple[dict[str, ResultColumn], int]:
-    """Return the columns of a block of tops, with `error`, and the number of tops with C > 2A.
+    block: Tops, keys: Iterable[str], *, are_bodies: bool
+) -> tuple[Columns, dict[int, str], int]:
+    """Return the columns of a block of tops, errors by row, and the number of tops with C > 2A.
 
-    These tops have an error if the tops must be bodies.  The result does not depend on the
-    `numpy.errstate` of the caller.
+    These tops have an error if the tops must be bodies.  The column of errors is empty.  The result
+    does not depend on the `numpy.errstate` of the caller.
     """
-    tops = top_arrays(block.inputs, block.size)
-    not_bodies = tops.not_bodies()
-    errors = {**block.errors, **(not_bodies if are_bodies else {})}
-    columns = _empty(dict.fromkeys([*keys, "error"]), tops.size)
-    inputs = {x: tops.tilt.in_unit(x) for x in ("theta0_deg", "theta0_rad")}
-    inputs |= {f"{x}{RADIUS}": np.zeros(tops.size) for x in tops.forms} | tops.forms | tops.inputs
-    for key, column in columns.items():
-        column[:] = inputs.get(key, np.nan if column.dtype == np.float64 else None)
-    columns["error"][[*errors]] = [*errors.values()]
-    given = {*inputs, "error"}
-    left_keys = [key for key in columns if key not in given and not key.endswith(RADIUS)]
-    if "psidot0" in columns and (tops.steady > 0).any():
-        left_keys.append("psidot0")
-    alone = np.ones(tops.size, dtype=np.bool_)
-    alone[[*errors]] = False
-    wanted: dict[int, list[str]] = {}
+    np.empty(_KEPT, np.uint8)
+    columns: Columns = {
+        key: np.full(block.size, None if key in TEXTS else np.nan) for key in dict.fromkeys(keys)
+    }
+    errors, not_bodies = dict(block.errors), 0
+    later: dict[Any, dict[str, list[Rows]]] = {}
+    alone: dict[int, list[str]] = {}
     with np.errstate(all="ignore"):  # what an overflow or a 0/0 has touched is not trusted
-        for regime, group in tops.groups().items():
-            rows = np.flatnonzero(group & alone)
-            left = dict.fromkeys(left_keys, rows) if rows.size else {}
-            for pairs in [True] if regime is None else [False, True]:
-                left = _rest(tops, left, regime, pairs, columns) if left else {}
-            for key, rows in left.items():
-                for row in rows.tolist():
-                    wanted.setdefault(row, []).append(key)
-            alone &= ~group
-    wanted |= dict.fromkeys(np.flatnonzero(alone).tolist(), left_keys)
-    _solve(tops, dict(sorted(wanted.items())), columns)
-    return columns, len(not_bodies)
+        for first in range(0, block.size, _TOGETHER):
+            rows = np.arange(first, min(first + _TOGETHER, block.size))
+            tops = _taken(block, rows)
+            known = tops.known(columns)
+            for key, x in known.items():
+                columns[key][_span(rows)] = x
+            sought = [x for x in columns if x not in {*known, "error"} and not x.endswith(RADIUS)]
+            not_body = first + np.flatnonzero(tops.numbers["C"] > 2 * tops.numbers["A"])
+            not_bodies += not_body.size
+            if are_bodies:
+                errors |= dict.fromkeys(not_body.tolist(), _NO_BODY)
+            fine = np.ones(rows.size, dtype=np.bool_)
+            fine[[row - first for row in errors if row >= first]] = False
+            for group, mask in tops.groups().items():
+                mine = np.flatnonzero(mask & fine)
+                fine &= ~mask
+                if not mine.size:
+                    continue
+                of = ArrayNumbers(tops.part(_span(mine)), group[0])
+                for key in [*sought, *["psidot0"] * (group[0] is Regime.STEADY)]:
+                    lost = _filled(of, key, first + mine, True, columns)
+                    if lost.size:
+                        later.setdefault(group, {}).setdefault(key, []).append(lost)
+            alone |= {first + row: [*sought] for row in np.flatnonzero(fine).tolist()}
+        for (regime, _), lost_rows in later.items():
+            left = {key: np.concatenate(x) for key, x in lost_rows.items()}
+            every = np.unique(np.concatenate([*left.values()]))
+            for start in range(0, every.size, _TOGETHER):
+                rows = every[start : start + _TOGETHER]
+                of = ArrayNumbers(_taken(block, rows), regime, pairs=True)
+                for key, mine in left.items():
+                    for row in _filled(of, key, rows, np.isin(rows, mine), columns).tolist():
+                        alone.setdefault(row, []).append(key)
+    _solve(block, dict(sorted(alone.items())), columns, errors)
+    return columns, errors, not_bodies
+
+
+_NO_BODY = "C must be <= 2 A (no rigid body has more)"
+
+
+def _span(rows: Rows) -> Any:
+    """Return rows as a slice, which is faster, if no row between them is missing."""
+    return slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] < rows.size else rows
+
+
+def _taken(block: Tops, rows: Rows) -> TopArrays:
+    """Return some of the tops."""
+    span, many = _span(rows), np.ndarray | np.flatiter
+    inputs = {name: x[span] if isinstance(x, many) else x for name, x in block.inputs.items()}
+    return top_arrays(inputs, rows.size)
 
 
 def _solve(
-    tops: TopArrays, wanted: Mapping[int, Sequence[str]], columns: Mapping[str, ResultColumn]
+    block: Tops,
+    wanted: Mapping[int, Sequence[str]],
+    columns: Mapping[str, ResultColumn],
+    errors: dict[int, str],
 ) -> None:
     """Fill the keys of some rows by `solve`, and their errors."""
     units = Units(radians=any(key.endswith("_rad") for key in columns))
     for row, names in wanted.items():
         try:
-            motion = solve(tops.one(row))
+            motion = solve(_taken(block, np.array([row])).one(0))
             record, beyond = record_in_range(motion, radii=True, units=units, keys=names)
         except LagtopError as error:
-            columns["error"][row] = str(error)
+            errors[row] = str(error)
             continue
         if beyond:
-            columns["error"][row] = "; ".join(map(str, beyond))
-        for key in tops.inputs.keys() & columns.keys():  # some are known only to `solve`
+            errors[row] = "; ".join(map(str, beyond))
+        for key in INPUTS & columns.keys():  # some are known only to `solve`
             record[key] = getattr(motion.top, key)
         if record.get("remark"):
             record["remark"] = record["remark"].partition(":")[0]
@@ -172,92 +192,53 @@ def _solve(
                 columns[key][row] = value
 
 
-def _rest(
-    tops: TopArrays,
-    left: Mapping[str, Rows],
-    regime: Regime | None,
-    pairs: bool,
-    columns: Mapping[str, ResultColumn],
-) -> dict[str, Rows]:
-    """Fill the rows of each key whose numbers can be trusted, and return the others by key."""
-    first, *others = left.values()
-    same = all(mine is first for mine in others)
-    rows = first if same else np.unique(np.concatenate([first, *others]))
-    rest: dict[str, list[Rows]] = {key: [] for key in left}
-    for start in range(0, rows.size, BLOCK_ROWS):
-        some = rows[start : start + BLOCK_ROWS]
-        of = ArrayNumbers(tops.part(_span(some)), regime, pairs=pairs)
-        for key, mine in left.items():
-            sought = True if same else np.isin(some, mine)
-            rest[key].append(_filled(of, key, some, sought, columns))
-    return {key: np.concatenate(x) for key, x in rest.items() if any(mine.size for mine in x)}
-
-
-def _span(rows: Rows) -> Any:
-    """Return rows as a slice, which is faster, if no row between them is missing."""
-    return slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] < rows.size else rows
-
-
-def _filled(
-    of: ArrayNumbers, key: str, rows: Rows, sought: Any, columns: Mapping[str, ResultColumn]
-) -> Rows:
+def _filled(of: ArrayNumbers, key: str, rows: Rows, sought: Any, columns: Columns) -> Rows:
     """Fill those rows of a key that are sought and can be trusted, and return the other ones."""
+    error: Any = np.nan
     if key in motion_record.TEXT_KEYS:
         value, trusted = text_of(of, key)
-        values = {key: value}
     else:
-        value, error, trusted = number_of(of, key)
-        values = {key: value, f"{key}{RADIUS}": error}
+        number, trusted = number_of(of, key)
+        value = number.value
+        if f"{key}{RADIUS}" in columns:
+            error = np.where(np.isnan(value), value, number.error)
     target, found = _span(rows), None
     if not (sought is True and np.all(trusted)):
         found = np.broadcast_to(sought & trusted, rows.shape)
         target = rows[found]
-    for name in values.keys() & columns.keys():
-        value = values[name]
-        columns[name][target] = value if found is None or not np.ndim(value) else value[found]
+    for name, x in ((key, value), (f"{key}{RADIUS}", error)):
+        if name in columns:
+            columns[name][target] = x if found is None or not np.ndim(x) else x[found]
     return rows[:0] if found is None else rows[sought & ~found]
 
 
-def number_of(of: ArrayNumbers, key: str) -> tuple[Any, Any, Any]:
-    """Return the numbers of a key, NaN where there is none, their bounds, and which are trusted."""
+def number_of(of: ArrayNumbers, key: str) -> tuple[Bounded, Any]:
+    """Return the numbers of a key, NaN where there is none, and which are trusted."""
     bare = bare_name(key)
     has = of.has(bare)
     if has is False or not np.any(has):
-        return np.nan, np.nan, True
+        return Bounded(np.nan), True
     number = of[bare].rounded()
     if key.endswith("_deg"):
         number = number * _DEGREE
-    value, size, error = number.value, number.size, number.error
-    limit = GOOD * (1.0 if bare in LINES and LINES[bare].relative_to else size)
-    trusted = (error <= limit) & ((size >= _LEAST) & (size <= _MOST) | (size == 0))
+    size, trusted = number.size, True
+    if number.relative is None or number.relative > GOOD:
+        is_cosine = bare in LINES and LINES[bare].relative_to
+        trusted = number.error <= GOOD * (1.0 if is_cosine else size)
+    if not (np.min(size) >= _LEAST and np.max(size) <= _MOST):
+        trusted = trusted & ((size >= _LEAST) & (size <= _MOST) | (size == 0))
     if has is True or np.all(has):
-        return value, error, trusted
-    value, error = (np.where(has, x, np.nan) for x in (value, error))
-    return value, error, trusted | ~has
+        return number, trusted
+    return choose(has, number, Bounded(np.nan)), trusted | ~has
 
 
 def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
     """Return the texts of a key, and which of them are certain."""
-    regime = of.regime
-    if key == "path":
-        return of.path
-    if key == "regime":
-        if regime is not None:
-            return regime.value, True
-        words = np.array([Regime.NO_SPIN.value, Regime.REGULAR.value], dtype=object)
-        return words[(of["r0"].doubles != 0).astype(int)], of["is_regular"]
-    return _remark(of)
-
-
-def _remark(of: ArrayNumbers) -> tuple[Any, Any]:
-    regime = of.regime
-    if of.vertical:
-        stable, unstable = (vertical_remark(regime or Regime.HANGING, x) for x in (True, False))
-        return np.where(of["b"].doubles ** 2 >= 2 * of["a"].doubles, stable, unstable), True
-    if regime is None:
-        return None, of["is_regular"]
-    if regime is not Regime.REGULAR:
-        return None, True
-    excess = of["b"] * of["b"] - of["a"] * float(FAST)
-    words = np.array([None, FAST_WORDS], dtype=object)
-    return words[(excess.doubles >= 0).astype(int)], excess.size > excess.error
+    text: Any = of.regime and of.regime.value
+    if key == "regime" and of.regime is None:
+        text = np.where(of.spin != 0, Regime.REGULAR.value, Regime.NO_SPIN.value)
+    elif key != "regime":
+        text, words = None, path_words(of, of) if key == "path" else remark_words(of)
+        for word, holds in reversed([*words]):
+            text = word if holds is True else np.where(holds, word, text)
+    return text, of.is_certain(key)

@@ -6,28 +6,28 @@ doubles and rounded once, so that the formulas begin with equal numbers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import factorial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, choose, size_of
+from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, choose, known, size_of
 from ..arithmetic.pairs import PI, DoubleDouble, pair
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import Regime
 from ..top.forms import Quantities
 from ..top.inputs import FORMS, NINE, STEADY_WORDS, TILT, replaced_by
 from ..top.top import Top
+from ..top.units import bare_name
 
 _SMALL, _LARGE = 1e-30, 1e30
 """Sizes between which no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _NEAR_1 = 2.0**-44
 """Distance of lambda = b^2/2a from 1 below which a pair of doubles may lose lambda - 1."""
-_KNOWN = 2.0**-66
+_KNOWN = 2.0**-80
 """Largest relative error of an input that follows from another form."""
 UNKNOWN = Bounded(np.nan, np.inf)
 """A number that only `solve` computes."""
@@ -36,8 +36,8 @@ UNKNOWN = Bounded(np.nan, np.inf)
 def pi_of(*, pairs: bool) -> Bounded:
     """Return pi, in doubles or in pairs of doubles."""
     if not pairs:
-        return Bounded(np.pi, EPS * np.pi)
-    return Bounded(DoubleDouble(*map(np.asarray, PI)), EPS**2)
+        return Bounded(np.pi, None, EPS, positive=True)
+    return Bounded(DoubleDouble(*map(np.asarray, PI)), None, EPS**2, positive=True)
 
 
 class Angles(NamedTuple):
@@ -69,10 +69,11 @@ class Angles(NamedTuple):
             arc = DoubleDouble.choose(in_degrees, arc, own)
         return down, arc.scaled(0.5)
 
-    def half(self, *, pairs: bool) -> tuple[Bounded, Bounded]:
-        """Return sine and cosine of half the tilts, in doubles or in pairs of doubles.
+    def start(self, *, pairs: bool) -> dict[str, Any]:
+        """Return sine and cosine of the tilts, and 1 - u0 and 1 + u0, by the names of formulas.
 
-        The half angle is taken from the nearer pole, so that its relative error is that of both.
+        Half the angle is taken from the nearer pole, so that the relative error of the distance is
+        that of all.
         """
         down, half = self.half_from_pole()
         near: Any
@@ -84,19 +85,29 @@ class Angles(NamedTuple):
             near, far = np.sin(half.high), np.cos(half.high)
             near, far = near + half.low * far, far - half.low * near
         unit = 8 * PAIR_EPS if pairs else 3 * EPS
-        of_difference = np.where(down & ~self.in_degrees, 4 * PAIR_EPS, 0.0)  # pi - theta0
-        of_near = Bounded(near, unit * size_of(near) + of_difference)
-        of_far = Bounded(far, unit * size_of(far))
-        return choose(down, of_far, of_near), choose(down, of_near, of_far)
+        sine, cosine = (Bounded(x, None, unit, positive=True) for x in (near, far))
+        if not self.in_degrees.all():  # pi - theta0
+            error = unit * size_of(near) + np.where(down, 4 * PAIR_EPS, 0.0)
+            sine = Bounded(near, error, positive=True)
+        from_pole, from_other = 2.0 * (sine * sine), 2.0 * (cosine * cosine)
+        u0 = 1.0 - from_pole
+        return {
+            "theta0": (2.0 * (sine * cosine), choose(down, -u0, u0)),
+            "above_u0": choose(down, from_other, from_pole),
+            "below_u0": choose(down, from_pole, from_other),
+        }
 
     def cosine(self) -> Bounded:
         """Return the cosines, in pairs of doubles."""
-        sine, cosine = self.half(pairs=True)
-        return (cosine - sine) * (cosine + sine)
+        found: Bounded = self.start(pairs=True)["theta0"][1]
+        return found
 
 
-@dataclass(frozen=True)
-class TopArrays:
+INPUTS = frozenset(NINE) - {TILT}
+"""The inputs that are numbers in any form, by their keys in a record, without the tilt."""
+
+
+class TopArrays(NamedTuple):
     """The inputs of many tops, an array each."""
 
     given: Mapping[str, Array]
@@ -104,77 +115,74 @@ class TopArrays:
     tilt: Angles
     steady: Array
     """1 or 2 for the words of a steady precession, else 0."""
-    m: Array
-    A: Array
-    C: Array
-    s: Array
-    g: Array
-    r0: Array
-    """NaN where only `solve` knows it."""
-    thetadot0: Array
-    psidot0: Array
-    """NaN for a word."""
+    numbers: Mapping[str, Array]
+    """The other inputs; NaN for a word, and where only `solve` knows it."""
     derived: Mapping[str, Bounded]
     """The inputs that follow from another form, in pairs of doubles."""
 
-    @property
-    def size(self) -> int:
-        """The number of tops."""
-        return self.m.size
-
-    @property
-    def inputs(self) -> dict[str, Array]:
-        """The inputs that are numbers in any form, by their keys in a record, without the tilt."""
-        return {name: getattr(self, name) for name in NINE if name != TILT}
-
-    @property
-    def forms(self) -> dict[str, Array]:
-        """The inputs that all tops have in another form, without the tilt."""
-        given = {x: y for x, y in self.given.items() if x in FORMS and replaced_by(x) != TILT}
-        return {x: y.astype(float) for x, y in given.items() if y.dtype != object or None not in y}
+    def known(self, keys: Iterable[str]) -> dict[str, Array]:
+        """Return inputs by key: in the form that all tops have, with the bounds of their errors."""
+        found: dict[str, Any] = {}
+        for key in keys:
+            form, radius, _ = key.partition("_radius")
+            own = self.given.get(form)
+            if bare_name(key) == TILT:
+                found[key] = self.tilt.in_unit(key)
+            elif key in INPUTS:
+                found[key] = self.numbers[key]
+            elif form in FORMS and own is not None and (own.dtype != object or None not in own):
+                found[key] = own.astype(float) * (not radius)
+        return found
 
     def part(self, rows: Any) -> TopArrays:
         """Return some of the tops, by a slice, a mask or their row numbers."""
-        given = {name: x[rows] for name, x in self.given.items()}
-        rest = {name: x[rows] for name, x in self.inputs.items()}
+
+        def some(arrays: Mapping[str, Any]) -> dict[str, Any]:
+            return {name: x[rows] for name, x in arrays.items()}
+
         tilt = Angles(*(x[rows] for x in self.tilt))
-        derived = {name: x[rows] for name, x in self.derived.items()}
-        return TopArrays(given=given, tilt=tilt, steady=self.steady[rows], derived=derived, **rest)
+        numbers, derived = some(self.numbers), some(self.derived)
+        return TopArrays(some(self.given), tilt, self.steady[rows], numbers, derived)
 
     def one(self, row: int) -> Top:
         """Return one top.  Raises LagtopError if it is invalid."""
         return Top(**{name: x.item(row) for name, x in self.given.items()})
 
-    def not_bodies(self) -> dict[int, str]:
-        """Return an error for each top with C > 2A, by row."""
-        error = "C must be <= 2 A (no rigid body has more)"
-        return dict.fromkeys(np.flatnonzero(self.C > 2 * self.A).tolist(), error)
-
-    def groups(self) -> dict[Regime | None, Mask]:
+    def groups(self) -> dict[tuple[Regime | None, bool], Mask]:
         """Return the tops of ordinary size that the formulas of sweeps compute.
 
-        Tops released from rest, and steady ones given by a word, are keyed by their regime; None
-        has those with other initial rates, with a torque and off the vertical.
+        The keys are a regime and whether tilts are in degrees.  Tops released from rest, and steady
+        ones given by a word, are keyed by their regime; None has those with other initial rates,
+        with a torque and off the vertical.
         """
-        ordinary, steady, falls = self._are_ordinary(), self.steady > 0, self.thetadot0 != 0
-        upright = self.tilt.number == 0
-        hanging = self.tilt.in_degrees & (self.tilt.number == 180)
-        inclined, torque = ordinary & ~(upright | hanging), (self.s > 0) & (self.g > 0)
-        at_rest = ~falls & (self.psidot0 == 0)
-        return {
-            Regime.SLEEPING: ordinary & at_rest & upright,
-            Regime.HANGING: ordinary & at_rest & hanging,
+        x, ordinary, steady = self.numbers, self._are_ordinary(), self.steady > 0
+        upright, in_degrees = self.tilt.number == 0, self.tilt.in_degrees
+        hanging = in_degrees & (self.tilt.number == 180)
+        falls, torque = x["thetadot0"] != 0, (x["s"] > 0) & (x["g"] > 0)
+        at_rest = ordinary & ~falls & (x["psidot0"] == 0)
+        inclined = ordinary & ~(upright | hanging)
+        released = inclined & at_rest & torque
+        groups = {
+            Regime.SLEEPING: at_rest & upright,
+            Regime.HANGING: at_rest & hanging,
             Regime.TORQUE_FREE: inclined & at_rest & ~torque,
-            Regime.NO_SPIN: inclined & at_rest & torque & (self.r0 == 0),
-            Regime.REGULAR: inclined & at_rest & torque & (self.r0 != 0),
+            Regime.NO_SPIN: released & (x["r0"] == 0),
+            Regime.REGULAR: released & (x["r0"] != 0),
             Regime.STEADY: inclined & steady & torque & ~falls & self._have_steady_rates(),
-            None: inclined & ~steady & torque & (falls | (self.psidot0 != 0)),
+            None: inclined & ~steady & torque & (falls | (x["psidot0"] != 0)),
+        }
+        units = [unit for unit in (True, False) if (in_degrees == unit).any()]
+        return {
+            (regime, unit): mask & (in_degrees == unit) if len(units) > 1 else mask
+            for regime, mask in groups.items()
+            for unit in units
         }
 
     def _have_steady_rates(self) -> Mask:
         """Return the tops with rates of steady precession; `solve` gives the others an error."""
-        least = 4 * self.A * self.m * self.g * self.s * np.cos(self.tilt.in_unit("theta0_rad"))
-        found: Mask = (self.C * self.r0) ** 2 > least
+        m, A, C, s, g, r0 = (self.numbers[name] for name in ("m", "A", "C", "s", "g", "r0"))
+        least = 4 * A * m * g * s * np.cos(self.tilt.in_unit("theta0_rad"))
+        found: Mask = (C * r0) ** 2 > least
         return found
 
     def _are_ordinary(self) -> Mask:
@@ -182,26 +190,25 @@ class TopArrays:
 
         Comparisons with NaN are false: tops that lack an input are not among them.
         """
-
-        def fits(x: Array, most: float = _LARGE) -> Mask:
-            return (x >= _SMALL) & (x <= most)
-
-        ordinary: Mask = fits(self.m) & fits(self.A) & fits(self.C)
-        rate: Array = np.where(self.steady > 0, 0.0, self.psidot0)
-        for x in (self.s, self.g, abs(self.r0), abs(self.thetadot0), np.abs(rate)):
-            ordinary &= (x == 0) | fits(x)
-        ordinary &= self.tilt.within(180, np.pi)
-        torque = self.m * self.g * self.s
-        lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
+        m, A, C, s, g, r0 = (self.numbers[name] for name in ("m", "A", "C", "s", "g", "r0"))
+        ordinary: Mask = self.tilt.within(180, np.pi)
+        for x in (m, A, C):
+            ordinary &= (x >= _SMALL) & (x <= _LARGE)
+        rate = np.where(self.steady > 0, 0.0, self.numbers["psidot0"])
+        for x in (s, g, np.abs(r0), np.abs(self.numbers["thetadot0"]), np.abs(rate)):
+            ordinary &= (x == 0) | (x >= _SMALL) & (x <= _LARGE)
+        torque = m * g * s
+        lam = (C * r0) ** 2 / (4 * A * torque)
         ordinary &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
-        return ordinary & ~(abs(lam - 1) < _NEAR_1)
+        return ordinary & ~(np.abs(lam - 1) < _NEAR_1)
 
     def number(self, name: str, *, pairs: bool) -> Bounded:
         """Return an input other than the tilt, in doubles or in pairs of doubles."""
         if (found := self.derived.get(name)) is not None:
+            found.positive = name in "mACsg"
             return found if pairs else found.rounded()
-        exact = getattr(self, name)
-        return Bounded(DoubleDouble(exact) if pairs else exact)
+        exact = self.numbers[name]
+        return Bounded(DoubleDouble(exact) if pairs else exact, positive=name in "mACsg")
 
 
 _SINE = [pair(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
@@ -232,7 +239,7 @@ def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
     rate = np.where(steady > 0, np.nan, turn.astype(object)) if steady.any() else turn
     numbers = {name: x.astype(float) for name, x in (given | {"psidot0": rate}).items()}
     tilt = _tilts(numbers, size)
-    nine = {name: numbers.get(name, np.full(size, np.nan)) for name in NINE if name != TILT}
+    nine = {name: numbers.get(name, np.full(size, np.nan)) for name in INPUTS}
     derived = dict[str, Bounded]()
     for key in (x for x in numbers if x in FORMS and replaced_by(x) != TILT):
         rows = np.array([x is not None for x in given[key]])  # the others have another form
@@ -241,7 +248,7 @@ def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
         other = derived.get(name, Bounded(DoubleDouble(nine[name])))
         derived[name] = choose(rows, _from_form(key, own, tilt), other)
         nine[name] = derived[name].doubles
-    return TopArrays(given=given, tilt=tilt, steady=steady, derived=derived, **nine)
+    return TopArrays(given, tilt, steady, nine, derived)
 
 
 def _tilts(numbers: Mapping[str, Array], size: int) -> Angles:
@@ -257,7 +264,6 @@ def _from_form(key: str, numbers: Mapping[str, Array], tilt: Angles) -> Bounded:
     with np.errstate(all="ignore"):
         pairs = {name: Bounded(DoubleDouble(x)) for name, x in numbers.items()}
         found = Quantities(pairs, pi=lambda: pi_of(pairs=True), u0=tilt.cosine)[replaced_by(key)]
-        fine = found.error <= _KNOWN * found.size
-    if FORMS[key].bound == "0 or more":
-        fine &= numbers[key] >= 0
-    return choose(fine, found, UNKNOWN)
+        if FORMS[key].bound == "0 or more":
+            found = choose(numbers[key] >= 0, found, UNKNOWN)
+        return known(found, _KNOWN)

@@ -154,7 +154,7 @@ def test_the_size_of_a_mean_rate_is_that_of_its_value() -> None:
     scene = {"m": 13218175665654.275, "s": 2.8135392389055003, "g": 3.8649844424897146e-08}
     scene |= {"A": 116053808155104.36, "C": 214894215985413.3, "r0": 5.048121267903476e-15}
     scene |= {"theta0_deg": 43.30544887403846, "thetadot0": 0.0, "psidot0": 2619.853383698917}
-    rate = ArrayNumbers(top_arrays(scene, 1), None, pairs=True)["mean_spin_rate"]
+    rate = ArrayNumbers(top_arrays(scene, 1), None)["mean_spin_rate"]
     assert rate.size == abs(rate.value)
 
 
