@@ -11,10 +11,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
@@ -138,50 +138,3 @@ def assert_gone(group: int) -> None:
 def joined(folder: Path) -> bytes:
     """Return the parts of a sweep in a folder, one after the other."""
     return b"".join(part.read_bytes() for part in sorted(folder.glob("part-*")))
-
-
-FORKED = """if True:
-    import os, sys
-    before, each, *lines = sys.argv[1:]
-    exec(before)
-    for i, line in enumerate(lines):
-        child = os.fork()
-        if not child:
-            for number, name in ((1, "out"), (2, "err")):
-                os.dup2(os.open(f"{i}.{name}", os.O_CREAT | os.O_WRONLY), number)
-            exec(each)
-            sys.argv = ["lagtop", *line.split()]
-            from lagrange_cli.__main__ import main
-            main()
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        with open(f"{i}.code", "w") as file:
-            file.write(str(code))
-"""
-
-
-class Ended(NamedTuple):
-    """The end of a command that ran in a process."""
-
-    code: int
-    stdout: bytes
-    stderr: bytes
-
-
-def forked(lines: Iterable[str], folder: Path, *, before: str = "", each: str = "") -> list[Ended]:
-    """Run command lines in a folder, each in a fork of one process that starts only once.
-
-    The process runs the code `before` at its start, and each fork runs the code `each`.
-    """
-    listed = list(lines)
-    place = folder / "forked"
-    place.mkdir()
-    subprocess.run(
-        [sys.executable, "-c", FORKED, before, each, *listed], check=True, cwd=place, timeout=300
-    )
-    return [
-        Ended(
-            int((place / f"{i}.code").read_text()),
-            *((place / f"{i}.{name}").read_bytes() for name in ("out", "err")),
-        )
-        for i in range(len(listed))
-    ]

@@ -6,11 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
 from click.shell_completion import ShellComplete
-from conftest import LAGTOP, ROOT, Lagtop, forked, process, wait_until
+from conftest import LAGTOP, ROOT, Lagtop, process, wait_until
 
 from lagrange_cli.cli.app import NAMES, main
 from lagrange_cli.cli.app import NAMES as COMMANDS
@@ -56,15 +57,20 @@ ECHOING = [
 ]
 
 
-def test_a_crash_asks_for_a_report(tmp_path: Path) -> None:
+def started_with(code: str, line: str, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    """Run a command in a process that runs some code first."""
+    start = "\nfrom lagrange_cli.__main__ import main\nmain()"
+    command = [sys.executable, "-c", textwrap.dedent(code) + start, *line.split()]
+    return subprocess.run(command, capture_output=True, check=False, cwd=folder, text=True)
+
+
+def test_a_crash_asks_for_a_report() -> None:
     broken = "import lagrange_cli.cli.solve as it; it.record_document = lambda *_: 1 / 0"
-    (ended,) = forked(["solve"], tmp_path, before=broken)
-    assert (ended.code, ended.stdout) == (70, b"")
-    text = (
-        b"Error: this is a bug, please report it with your command: ZeroDivisionError in solve.py"
-    )
+    ended = started_with(broken, "solve")
+    assert (ended.returncode, ended.stdout) == (70, "")
+    text = "Error: this is a bug, please report it with your command: ZeroDivisionError in solve.py"
     assert ended.stderr.startswith(text)
-    assert ended.stderr.count(b"\n") == 1
+    assert ended.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -81,22 +87,19 @@ def test_a_package_that_is_not_installed(
     package: str, extra: str, line: str, tmp_path: Path
 ) -> None:
     (tmp_path / "a.parquet").write_bytes(b"PAR1")
-    start = "from lagrange_cli.__main__ import main; main()"
-    code = f"import sys; sys.modules[{package!r}] = None; {start}"
-    command = [sys.executable, "-c", code, *line.split()]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    done = started_with(f"import sys; sys.modules[{package!r}] = None", line, tmp_path)
     assert (done.returncode, done.stdout) == (69, "")
     assert done.stderr.count("\n") == 1
     assert done.stderr.endswith(f": pip install '.[{extra}]' in the folder of lagtop\n")
 
 
 @pytest.mark.parametrize("count", [1, pytest.param(None, marks=pytest.mark.slow)])
-def test_only_needed_packages_are_loaded(count: int | None, tmp_path: Path) -> None:
-    listing = "import atexit; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
-    lines = [*LOADED][:count]
-    for line, end in zip(lines, forked(lines, tmp_path, each=listing), strict=True):
-        assert end.code == 0
-        names = {name.partition(".")[0] for name in end.stderr.decode().split()}
+def test_only_needed_packages_are_loaded(count: int | None) -> None:
+    listing = "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
+    for line in [*LOADED][:count]:
+        end = started_with(listing, line)
+        assert end.returncode == 0
+        names = {name.partition(".")[0] for name in end.stderr.split()}
         assert names & HEAVY == LOADED[line], line
 
 
@@ -164,16 +167,13 @@ def test_closed_standard_error_and_a_file(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_the_rows() -> None:
-    code = """if True:
+    code = """
         import atexit, sys
-        from lagrange_cli.__main__ import main
         atexit.register(lambda: sys.stderr.write(open("/proc/self/status").read()))
-        main()
     """
     used = []
     for count in ("1e5", "1e6"):
-        command = [sys.executable, "-c", code, "table", "--n", count, "-o", "/dev/null"]
-        status = subprocess.run(command, capture_output=True, check=True).stderr.decode()
+        status = started_with(code, f"table --n {count} -o /dev/null").stderr
         used.append(int(status.partition("VmHWM:")[2].split()[0]) / 1024)
     assert used[1] < min(200, used[0] + 10)
 
@@ -223,53 +223,34 @@ def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name: str, tmp_path
     assert (tmp_path / "out.csv").read_bytes().count(b"\n") == 1_000_001
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("module", ["click", "lagrange_cli.cli.app", "numpy"])
-def test_ctrl_c_while_modules_are_imported(module: str) -> None:
-    code = f"""if True:
-        import os, signal, sys
-
-        class Interrupt:
-            def find_spec(name, *_):
-                if name == {module!r}:
-                    os.kill(os.getpid(), signal.SIGINT)
-
-        sys.meta_path.insert(0, Interrupt)
-        from lagrange_cli.__main__ import main
-        main()
-    """
-    done = subprocess.run([sys.executable, "-c", code, "table"], capture_output=True, check=False)
-    assert (done.returncode, done.stderr, done.stdout) == (-signal.SIGINT, b"", b"")
-
-
-LOSING = [
-    # another error takes its place, as in flint if it cannot import zlib
-    "try: signal.raise_signal(number)\nexcept BaseException: raise ImportError",
+AT_IMPORTS = {
+    **dict.fromkeys(("click", "lagrange_cli.cli.app", "numpy"), "signal.raise_signal(number)"),
+    # another error takes the place of the exception, as in flint if it cannot import zlib
+    "flint": "try: signal.raise_signal(number)\nexcept BaseException: raise ImportError",
     # Python ignores the exceptions of callbacks
-    "it = set(); weak = weakref.ref(it, lambda _: signal.raise_signal(number)); del it\n"
-    "time.sleep(0.5)",
-]
+    "flint.pyflint": "it = set(); weak = weakref.ref(it, lambda _: signal.raise_signal(number))\n"
+    "del it; time.sleep(0.5)",
+}
+"""Modules, and what is done when they are imported."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lose", LOSING)
+@pytest.mark.parametrize("module", AT_IMPORTS)
 @pytest.mark.parametrize(("name", "wanted"), [("INT", {-2}), ("TERM", {-15, 143})])
-def test_a_signal_whose_exception_is_lost(name: str, wanted: set[int], lose: str) -> None:
-    code = f"""if True:
+def test_signals_while_modules_are_imported(name: str, wanted: set[int], module: str) -> None:
+    code = f"""
         import signal, sys, time, weakref
         number = signal.SIG{name}
 
-        class Losing:
+        class Signalling:
             def find_spec(name, *_):
-                if name == "flint":
-                    exec({lose!r}, globals())
+                if name == {module!r}:
+                    exec({AT_IMPORTS[module]!r}, globals())
 
-        sys.meta_path.insert(0, Losing)
-        from lagrange_cli.__main__ import main
-        main()
+        sys.meta_path.insert(0, Signalling)
     """
-    done = subprocess.run([sys.executable, "-c", code, "solve"], capture_output=True, check=False)
-    assert (done.stderr, done.stdout) == (b"", b"")
+    done = started_with(code, "table")
+    assert (done.stderr, done.stdout) == ("", "")
     assert done.returncode in wanted
 
 
