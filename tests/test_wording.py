@@ -60,7 +60,7 @@ def bytes_of(text: str) -> bytes:
 FILES = {
     name: bytes_of(text) for name, text in re.findall(r"^File (\S+): (.*)", TEXT, re.MULTILINE)
 }
-"""Files in the folder in which the commands run."""
+"""Files beside an empty `folder` in the folder in which the commands run; none is changed."""
 
 
 def said_by(line: str) -> str:
@@ -86,12 +86,14 @@ def said_by(line: str) -> str:
 @pytest.mark.parametrize(("line", "said"), EXAMPLES)
 def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir(exist_ok=True)
     for name, content in FILES.items():
         (tmp_path / name).write_bytes(content)
     found = said_by(line)
     assert found.isprintable()
     assert found == said or re.fullmatch(".*".join(map(re.escape, said.split("..."))), found)
-    assert {path.name for path in tmp_path.iterdir()} == {*FILES}
+    left = {x.name: x.read_bytes() for x in tmp_path.iterdir() if x.name != "folder"}
+    assert left == FILES
 
 
 def rewrite() -> None:

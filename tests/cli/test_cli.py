@@ -202,17 +202,6 @@ def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Pat
     assert [row[0] for row in rows(from_file)] == [0.3, -100, 0.1]
 
 
-# errors
-
-
-def test_a_failed_command_leaves_its_file_as_it_was(lagtop: Lagtop, tmp_path: Path) -> None:
-    target = tmp_path / "out.csv"
-    target.write_text("old")
-    for bad in ("--theta0 200", "--t-max 1e30", "--times /nowhere", "nowhere.toml"):
-        assert lagtop("table", "-o", target, *bad.split()).exit_code in (2, 65)
-    assert (target.read_text(), [*tmp_path.iterdir()]) == ("old", [target])
-
-
 @pytest.mark.parametrize("fmt", ["csv", "ndjson"])
 def test_the_record_of_a_steady_top_is_a_file_of_tops(fmt: str, lagtop: Lagtop) -> None:
     record = lagtop("solve", "--r0", "60", "--psidot0", "steady", "--format", fmt).stdout
@@ -230,15 +219,6 @@ def test_one_window_of_a_fit_is_a_record_in_json(
     monkeypatch.setattr("lagrange_cli.inverse.report.fit_report", lambda *_, **__: empty)
     write_fits([outcome], "", "", Output(str(path := tmp_path / "fit"), "json"))
     assert path.read_text() == '{"a":1.5}\n'
-
-
-@pytest.mark.parametrize("line", ["sweep", "fit", "compare", "table --times", "explain K"])
-def test_an_input_is_not_replaced(line: str, tmp_path: Path, lagtop: Lagtop) -> None:
-    path = tmp_path / "tops.csv"
-    path.write_text(content := "r0\n40\n")
-    result = lagtop(*line.split(), path, "-o", tmp_path / "." / "tops.csv")
-    assert_one_line(result, 2, "-o must not be a file that is read, got ")
-    assert path.read_text() == content
 
 
 def test_words_that_name_a_scene() -> None:

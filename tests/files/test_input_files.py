@@ -73,36 +73,6 @@ def test_standard_input_on_windows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
     assert lagtop("sweep", "-", "--keys", "K", input="r0\n0\n").exit_code == 0
 
 
-def test_files_without_inputs_or_tops_are_told(tmp_path: Path, lagtop: Lagtop) -> None:
-    path, tops = scene(tmp_path, "# nothing yet\n"), tmp_path / "tops.csv"
-    tops.write_text("r0\n")
-    for words, stdout, said in (
-        (["solve", path, "--get", "r0"], "50.0\n", "no inputs: using the worked example"),
-        (["sweep", path, "--keys", "r0"], "r0\n50.0\n", "no inputs: using the worked example"),
-        (["sweep", tops, "--keys", "k"], "k,error\n", "no tops"),
-        (["sweep", tops, "--keys", "k", "--format", "json"], "[]\n", "no tops"),
-    ):
-        result = lagtop(*words)
-        assert (result.exit_code, result.stdout) == (0, stdout)
-        assert result.stderr.startswith(f"Warning: {words[1]} h")
-        assert result.stderr.endswith(f" {said}\n")
-    assert lagtop("sweep", tops, "--shard", "2/2").stderr == ""
-
-
-@pytest.mark.parametrize(
-    "line",
-    ["solve FILE.toml", "sweep FILE.csv", "compare FILE.csv", "table --times FILE"],
-)
-def test_a_file_that_cannot_be_read_ends_with_65(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lagtop: Lagtop
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    name = line.rsplit(maxsplit=1)[-1]
-    assert_one_line(lagtop(*line.split()), 65, f"{name}: No such file or directory")
-    Path(name).mkdir()
-    assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory: pass a file")
-
-
 # The files in sample_inputs/files: the worked example at 26 times, or tops
 
 

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
-from lagtop import LagtopError
 from pyarrow import parquet
 from scipy.spatial.transform import Rotation
 
@@ -174,28 +173,6 @@ def test_names_keep_the_units_of_headings(
         values = read(tmp_path / "file", names, radians=False)
         row = -1 if content is text else 0
         assert [values["t"][row, 0], values["theta"][row, 0]] == pytest.approx(found)
-
-
-def test_names_keep_the_units_of_headings_in_a_comment(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("# t [ms],theta [rad]\n500,1\n")
-    values = read(tmp_path / "file", ["t", "theta"], radians=False)
-    assert [*values["t"][0], *values["theta"][0]] == [0.5, 1]
-
-
-def test_a_unit_is_the_fault_of_the_file_or_of_the_names(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("clock [rpm],tilt\n0,1\n")
-    with pytest.raises(DataError, match=r"file: t must have a unit such as s or ms, got .* 'rpm'"):
-        read(tmp_path / "file", ["t", "theta"])
-    with pytest.raises(LagtopError, match=r"^t must have a unit such as s or ms, got .* 'rpm'"):
-        read(tmp_path / "file", ["t [rpm]", "theta"])
-
-
-def test_bad_names_of_columns(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("0 1\n")
-    with pytest.raises(LagtopError, match=r"columns must name all 2 columns of .* got 5 names"):
-        read(tmp_path / "a.txt", ["t", "quaternion"])
-    with pytest.raises(LagtopError, match=r"got 'thta' \(did you mean 'theta'\?\)"):
-        read(tmp_path / "a.txt", ["t", "thta"])
 
 
 def test_conventions_and_masks_of_a_trajectory(tmp_path: Path) -> None:
