@@ -28,6 +28,11 @@ from lagrange_cli.output.report import Report
 WORKED = {"worked": solve(Top())}
 
 
+@pytest.fixture(autouse=True)
+def runs_are_not_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measure, "SECONDS_OF_RUNS", 0.0)
+
+
 def row(method: str, setting: Any, error: float | None, ns: float | None, span: float = 1) -> Row:
     """Return a row of a scene."""
     return Row("scene", method, setting, span, error, ns)
@@ -147,7 +152,6 @@ def test_a_method_of_a_user_is_one_entry(
 ) -> None:
     """Its name may hold mathematics; so may the names of scenes, which are cleaned."""
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr(measure, "SECONDS_OF_RUNS", 0.0)
     monkeypatch.chdir(tmp_path)
     for name in ("$mine_{$", "yours"):
         monkeypatch.setitem(METHODS, name, Method([1, 2], METHODS["scipy.special"].prepare))

@@ -74,7 +74,7 @@ def test_names_of_files_stay_as_they_are(
             assert found[0] == found[1]
 
 
-@pytest.mark.parametrize("window", [(), ("--window", "2")])
+@pytest.mark.parametrize("window", [(), pytest.param(("--window", "2"), marks=pytest.mark.slow)])
 def test_a_report_holds_every_reason_that_the_last_line_does_not(
     window: tuple[str, ...], lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -92,8 +92,8 @@ def test_sweeps_ask_for_every_form_as_solve_does() -> None:
 
 @pytest.mark.parametrize("key", MEASURED)
 def test_a_form_is_a_known_input_of_a_fit(key: str) -> None:
-    inputs, t = in_form(TOP, key), np.linspace(0, 2, 150)
-    noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, 150))
+    inputs, t = in_form(TOP, key), np.linspace(0, 1, 60)
+    noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, 60))
     theta, phi, psi = solve(TOP).angles(t) + noise
     names = ("m", "g", "s", key) if replaced_by(key) == "A" else (key,)
     known = {x: inputs[x] for x in names}
