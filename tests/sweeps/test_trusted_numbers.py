@@ -56,7 +56,7 @@ def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
             error = abs(Fraction(str(exact.value)) - Fraction(value))
             assert error <= bound + 1e-24 * abs(value), (key, scene)
             size = 1 if NUMBERS[key].relative_to else abs(value)
-            assert bound <= max(1e-13 * size, 5e-324), (key, scene)
+            assert bound <= max(1e-13 * size, 1e-323), (key, scene)
         assert found["psidot0"][i] == pytest.approx(float(motion.top.psidot0), rel=1e-13)
 
 

@@ -10,8 +10,8 @@ r0, and A_cm in place of A.  With --times N, the attitude of tops that nutate is
 next to halves and quarters of a period up to 1e14 periods away.  With --sweep, every number of a
 sweep must be within 10 eps.
 
-What exceeds the bounds is listed with a command that shows it, and the exit code is 1.  About five
-scenes a second and core.
+What exceeds the bounds is listed with a command that shows it, and the exit code is 1.  A run that
+is stopped lists what it has found.  About five scenes a second and core, with --sweep one.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ from __future__ import annotations
 import argparse
 import math
 import random
+import signal
 import sys
 import time
 from collections import Counter
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from multiprocessing import Pool
 from pathlib import Path
 from typing import Any
 
@@ -262,6 +263,13 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
     return kind, tally
 
 
+def stop(*_: object) -> None:
+    """End a run at its first signal; `timeout` sends two."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
 def main() -> int:
     """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -283,16 +291,20 @@ def main() -> int:
         for first in range(0, share, CHUNK)
         for kind in kinds
     ]
-    with ProcessPoolExecutor(options.jobs) as pool:
-        for kind, tally in pool.map(run_chunk, tasks):
-            tallies[kind].add(tally)
+    with Pool(options.jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, stop)
+        with suppress(KeyboardInterrupt):  # of a run that is stopped, print what was found
+            for kind, tally in pool.imap_unordered(run_chunk, tasks):
+                tallies[kind].add(tally)
     for kind, tally in tallies.items():
         worst = ", ".join(f"{name} {x:.3g}" for name, x in tally.worst.items())
         counts = ", ".join(f"{name} {n}" for name, n in tally.counts.items())
         beyond = [f"\n    {line}" for line in tally.violations[:MOST_SHOWN]]
         print(f"{kind}: {counts}; worst: {worst}; beyond: {len(tally.violations)}", *beyond, sep="")
     done = sum(tally.counts["scenes"] for tally in tallies.values())
-    print(f"{done} scenes, seed {options.seed}, in {time.monotonic() - begun:.0f} s")
+    asked = f"{done} of {share * len(kinds)} scenes"
+    print(f"{asked}, seed {options.seed}, in {time.monotonic() - begun:.0f} s")
     return 1 if any(tally.violations for tally in tallies.values()) else 0
 
 
