@@ -121,17 +121,6 @@ def test_chain(name: str) -> None:
             assert is_nearest(row["xi_prime"], sn * (-1) ** int(turns))
 
 
-def test_far_times(lagtop: Lagtop) -> None:
-    """More digits for them, or a refusal."""
-    args = "eta --delta 0.7 --delta-star 0.2 --gap-above 1 --gap-below 1 --rad --tau 0,1e60".split()
-    more = "--columns eta,etadot,theta --digits 17 --format csv".split()
-    header, first, far = lagtop(*args, *more).stdout.splitlines()
-    assert header == "tau,eta,etadot,theta_rad"
-    assert first == "0.0,0.2,0.0,-1.5707963267948966"
-    assert far.startswith("1.0e+60,0.46542969581402027,-0.31188048026682578,")
-    assert "tau must be within 2^50 periods" in lagtop(*args).stderr
-
-
 def test_the_order_of_the_outer_roots_is_free() -> None:
     one, other = quadrature("-0.5", "0.6", "-1.3 1.5"), quadrature("-0.5", "0.6", "1.5 -1.3")
     assert eta_record(one) == eta_record(other)

@@ -49,37 +49,6 @@ def test_zeros_and_poles_at_whole_quarters(
         assert [i for i, x in enumerate(found) if not x] == list(poles.get(name, [])), name
 
 
-@pytest.mark.parametrize(
-    ("args", "known"),
-    [
-        ("--k 1e-30 --u 0.5 --functions omega --param 0.25", {"omega01": "-5.04278350139169e-62"}),
-        ("--k 0.9 --u 1e12 --functions pi --param 0", {"pi00": "0.0"}),
-        ("--k 0.5 --u 0.3 --functions pi --param 0i", {"pi11": "", "pi01": "0.0"}),
-        ("--k 0.5 --u 0.3 --functions omega,pi --param 0.3", {"omega11": "", "pi11": ""}),
-        ("--k 0.5 --u 0.3 --functions omega,pi --param=-0.3", {"omega11": "", "pi11": ""}),
-        ("--k 0 --u 1 --functions zeta", {"zeta01": "0.0"}),
-        ("--k 0.5 --u 0 --functions zeta", {"zeta00": "0.0", "zeta11": ""}),
-        ("--k 0 --u 1 --functions omega --param 1e15i", {"omega11_imag": "-0.570796326794897"}),
-        (
-            "--nome 1e-2141 --u 2479+1020i --functions theta",
-            {"theta10_re": "-5.16051595388114e-93", "theta10_im": "1.50292330378978e-93"},
-        ),
-        ("--nome 0.9999999999 --functions pi --param 0.3 --u 1", {"pi00": "0.0"}),
-        ("--k 2 --u 0+0i --functions omega,pi --param 0", {"omega11_re": "", "pi11_im": ""}),
-        ("--k 5e18i --u 0+0i --functions omega --param 0", {"omega11_re": "", "omega00_re": "0.0"}),
-    ],
-)
-def test_cells(args: str, known: dict[str, str], lagtop: Lagtop) -> None:
-    """A pole is empty; a number equal to 0 in 1,200 digits is 0; a nome may be tiny."""
-    found = cells(lagtop, f"{args} --digits 15")
-    assert {name: found[name] for name in known} == {name: [x] for name, x in known.items()}
-
-
-def test_a_range_of_equal_ratios_has_decimals(lagtop: Lagtop) -> None:
-    found = cells(lagtop, "--k 0.5 --u log:2:3:5 --digits 30")
-    assert found["u"][1] == "2.21336383940064318481758054688"
-
-
 @DIGITS
 def test_poles_and_zeros_of_complex_numbers(digits: str, lagtop: Lagtop) -> None:
     found = cells(lagtop, f"--k 0.5 --u 0,1+i,-1-i,9i --functions am,zeta,pi --param 1+i{digits}")
@@ -102,22 +71,6 @@ def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lag
     """Parts that are 0 by a symmetry are printed as 0, and nothing else is."""
     found = cells(lagtop, f"{modulus} --u={u} --functions omega,pi --param={v} --digits 9")
     assert {name for name, (text,) in found.items() if text == "0.0"} == set(zeros.split())
-
-
-@pytest.mark.parametrize(
-    ("options", "row"),
-    [
-        ("--u 0.25 --digits 1", "0.2,0.2,0.2,1.0,1.0"),
-        ("--u 12345 --digits 4", "12340.0,12340.0,-0.9938,0.1114,1.0"),
-        ("--phi 0.25 --digits 1", "0.2,0.2,0.2"),
-        ("--u 0.25+1i --digits 1", "0.2,1.0,0.2,1.0,0.4,1.0,1.0,-0.3,1.0,0.0"),
-        ("--u 1+2.5i --digits 1", "1.0,2.0,1.0,2.0,5.0,3.0,3.0,-5.0,1.0,0.0"),
-    ],
-)
-def test_am_at_k_0_is_u_also_midway(options: str, row: str, lagtop: Lagtop) -> None:
-    """Midway between two roundings, the even digit is printed."""
-    result = lagtop("jacobi", "--k", "0", "--rad", "--format", "csv", *options.split())
-    assert result.stdout.splitlines()[1:] == [row]
 
 
 @pytest.mark.parametrize("options", ["--k 0 --u 1e19i", "--k 1 --u 1e19+0.5i", "--k 1 --u 1e19"])

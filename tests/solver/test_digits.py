@@ -260,14 +260,3 @@ def test_commands_write_radii(lagtop: Lagtop) -> None:
     )
     assert list(row[0])[3:6] == ["psi_deg", "theta_deg_radius", "phi_deg_radius"]
     assert 0 < row[0]["phi_deg_radius"] <= row[0]["phi_deg"] * 2.0**-52
-
-
-def test_the_separatrix_is_decided_at_once_at_any_time(lagtop: Lagtop) -> None:
-    """The tilt falls as exp(-t), below the exponents of decimals; what stays finite is printed."""
-    top = "--m 1 --A 1 --C 1 --s 1 --g 1 --r0 0 --theta0 60 --thetadot0 1".split()
-    args = [*top, "--t-min", "1e20", "--t-max", "1e20", "--n", "1", "--digits", "20"]
-    refused = lagtop("table", *args, "--format", "csv", "--columns", "theta")
-    assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "the size of a value is not between 1e-990000000000000000 and" in refused.stderr
-    shown = lagtop("table", *args, "--format", "csv", "--columns", "phi,psi,axis_z,quaternion_w")
-    assert shown.stdout.splitlines()[1:] == ["180.0,180.0,1.0,-1.0"]

@@ -5,7 +5,7 @@
 Each fault changes one operator, comparison, condition or number in a copy of the project: + becomes
 -, * becomes /, < becomes >=, a condition or a truth value its opposite, a number one more.  Default
 values of arguments, annotations and messages are left alone.  The tests of the folder of the same
-name and those of the wording run with -x.  A fault that no test sees is printed: judge whether it
+name and those of the examples run with -x.  A fault that no test sees is printed: judge whether it
 changes anything.
 The exit code is 1 if less than 80 % are seen.
 """
@@ -90,7 +90,7 @@ def is_seen(copy: Path, folder: str) -> bool:
     """Return whether the quick tests of a folder of the copy fail, or run for ten minutes."""
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
     environment = os.environ | {"PYTHONPATH": str(copy)}
-    command += [f"tests/{folder}", "tests/test_wording.py"]
+    command += [f"tests/{folder}", "tests/test_examples.py"]
     try:
         subprocess.run(
             command, cwd=copy, env=environment, capture_output=True, check=True, timeout=600

@@ -1,6 +1,6 @@
-"""The wording of messages: each line of `wording.txt` ends as shown there.
+"""Pages of examples: the wording of messages, and numbers that are known exactly.
 
-`python tests/test_wording.py` rewrites the messages that no longer are as shown.  All other tests
+`python tests/test_examples.py` rewrites the messages that no longer are as shown.  All other tests
 ask for the type of an error and for its values.
 """
 
@@ -28,7 +28,8 @@ from lagrange_cli.cli.app import main
 from lagrange_cli.names import check_names
 from lagrange_cli.top import values
 
-PATH = Path(__file__).with_name("wording.txt")
+PAGES = Path(__file__).parent / "examples"
+PATH = PAGES / "wording.txt"
 
 
 def sentence(words: str) -> str:
@@ -94,6 +95,18 @@ def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.Mon
     assert found == said or re.fullmatch(".*".join(map(re.escape, said.split("..."))), found)
     left = {x.name: x.read_bytes() for x in tmp_path.iterdir() if x.name != "folder"}
     assert left == FILES
+
+
+NUMBERS = re.findall(
+    r"^(\$ .*)\n((?:.+\n)+)", (PAGES / "numbers.txt").read_text(encoding="utf-8"), re.MULTILINE
+)
+
+
+@pytest.mark.parametrize(("line", "shown"), NUMBERS)
+def test_numbers(line: str, shown: str) -> None:
+    ended = CliRunner(catch_exceptions=False).invoke(main, shlex.split(line)[2:])
+    assert ended.exit_code == 0, ended.stderr
+    assert re.fullmatch("[^,\n]+".join(map(re.escape, shown.split("..."))), ended.stdout)
 
 
 def rewrite() -> None:
