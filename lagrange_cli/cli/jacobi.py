@@ -241,7 +241,15 @@ def eta_command(
     """
     opt.exclude(p=p, gap_above=gap_above)
     opt.exclude(p=p, gap_below=gap_below)
-    quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
+    if (p is None) is not (q is None):
+        raise LagtopError("--p and --q belong together: give both, or neither")
+    for name, gap in {"--gap-above": gap_above, "--gap-below": gap_below}.items():
+        if gap is not None and gap <= 0:
+            raise LagtopError(f"{name} must be > 0 (the period is infinite at 0), got {float(gap)}")
+    gaps = [delta_star - gap_below] if gap_below else []
+    gaps += [delta + gap_above] if gap_above else []
+    outer = gaps if p is None or q is None else [p - q.real, p + q.real]
+    quadrature = eta.Quadrature(delta_star, delta, tuple(outer), g, q.imag if q else Fraction(0))
     if tau is not None:
         names = check_names("columns", columns or ["eta"], eta.ETA_COLUMNS)
         rows = eta.eta_rows(tau, quadrature, names, units=Units(rad), digits=digits)
@@ -251,23 +259,3 @@ def eta_command(
         raise LagtopError("--columns needs --tau")
     keys = constant_keys("Roots", eta.CONSTANTS)
     out.document(record_document(eta.eta_record(quadrature, digits), lambda: keys))
-
-
-def _quadrature(
-    delta: Fraction,
-    delta_star: Fraction,
-    middle: tuple[Fraction | None, ExactComplex | None],
-    gaps: tuple[Fraction | None, Fraction | None],
-    g: Fraction,
-) -> eta.Quadrature:
-    """Return the quadrature with its outer roots, by their middle or by the gaps to them."""
-    (p, q), (above, below) = middle, gaps
-    if p is not None and q is not None:
-        return eta.Quadrature(delta_star, delta, (p - q.real, p + q.real), g, q.imag)
-    if p is not None or q is not None:
-        raise LagtopError("--p and --q belong together: give both, or neither")
-    for name, gap in {"--gap-above": above, "--gap-below": below}.items():
-        if gap is not None and gap <= 0:
-            raise LagtopError(f"{name} must be > 0 (the period is infinite at 0), got {float(gap)}")
-    outer = (delta_star - below if below else None, delta + above if above else None)
-    return eta.Quadrature(delta_star, delta, tuple(root for root in outer if root is not None), g)

@@ -17,7 +17,7 @@ from ..names import listed, split_names
 from ..output.destination import MOST_ROWS, MOST_UPRIGHT, Output, opened
 from ..output.formats import FORMATS, PICTURES, WITH_COMMAS
 from ..output.terminal import is_screen
-from ..top.inputs import BODY, BODY_UNITS, DECLARED, remark_on
+from ..top.inputs import BODY, BODY_UNITS, DECLARED, declared, remark_on
 from ..top.units import Units, is_unit
 from ..top.values import Value, parse_value, tilt_key
 from .app import complain, worded
@@ -94,6 +94,7 @@ def _parse_list(text: str) -> list[str]:
 NUMBER = Parsed("X", parse_number)
 LIST = Parsed("NAME,...", _parse_list)
 TIME = values()
+_DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
 
 option = click.option
 rad = option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
@@ -119,53 +120,23 @@ def decimal(*, reads: bool = True, writes: bool = False) -> Callable[[F], F]:
     )
 
 
-_DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
-_READING = {
-    "columns": option(
-        "--columns",
-        type=LIST,
-        help="Names of all columns; axis, quaternion and matrix stand for all of their parts, _ "
-        "skips a column.  A name may have a unit: 't [ms]'.",
-    ),
-    "align": option(
-        "--align",
-        metavar="WORD,...",
-        type=LIST,
-        help="Frames of the data: up=y (y points up), axis=y (y is the figure axis), left "
-        "(left-handed), conjugate (attitude from space to body).  To begin in the first row: start "
-        "(spin and precession), time.",
-    ),
-    "quaternion_order": option(
-        "--quaternion-order",
-        metavar="ORDER",
-        type=click.Choice(["wxyz", "xyzw"]),
-        default="wxyz",
-        help="Order of a quaternion whose names do not show it: wxyz or xyzw.",
-    ),
-    "euler_sequence": option(
-        "--euler-sequence",
-        metavar="SEQ",
-        default="xyz",
-        help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
-    ),
-    "rates_frame": option(
-        "--rates-frame",
-        metavar="FRAME",
-        type=click.Choice(["body", "space"]),
-        default="body",
-        help="Frame of the angular velocity: body or space.",
-    ),
-    "dt": option(
-        "--dt",
-        type=Parsed("X", parse_positive),
-        help="Time between two rows without a time, or between two frames.",
-    ),
-    "fps": option("--fps", type=Parsed("N", parse_positive), help="Frames per unit of time: 1/dt."),
-    "t_min": option("--t-min", type=_DOUBLE, help="First time to read."),
-    "t_max": option("--t-max", type=_DOUBLE, help="Last time to read."),
-    "decimal": decimal(),
-}
-"""The options of a reading by argument."""
+_READING = """
+columns | NAME,... |
+    | Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips a
+    column.  A name may have a unit: 't [ms]'.
+align | WORD,... | | Frames of the data: up=y (y points up), axis=y (y is the figure axis), left
+    (left-handed), conjugate (attitude from space to body).  To begin in the first row: start
+    (spin and precession), time.
+quaternion_order | ORDER | wxyz xyzw
+    | Order of a quaternion whose names do not show it: wxyz or xyzw.
+euler_sequence | SEQ | xyz | Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.
+rates_frame | FRAME | body space | Frame of the angular velocity: body or space.
+dt | X | | Time between two rows without a time, or between two frames.
+fps | N | | Frames per unit of time: 1/dt.
+t_min | X | | First time to read.
+t_max | X | | Last time to read.
+"""
+"""The options of a reading: argument, metavariable, default and other choices, and help."""
 
 
 def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> list[Any]:
@@ -188,14 +159,19 @@ def recording(function: F) -> F:
     def run(top: TopOptions, **others: Any) -> None:
         from ..recordings.options import Reading  # start-up
 
-        given = {x: others.pop(x) for x in _READING}
+        given = {x: others.pop(x) for x in [*names, "decimal"]}
         given = {x: y for x, y in given.items() if y is not None}
         reading = Reading.of(units=Units(radians=top.radians), **given)
         function(top=top, reading=reading, **others)
 
-    found: Any = run
-    for declare in reversed(_READING.values()):
-        found = declare(found)
+    names = [name for name, *_ in declared(_READING)]
+    found: Any = decimal()(run)
+    for name, metavar, words, text in reversed([*declared(_READING)]):
+        kind: Any = LIST if "," in metavar else _DOUBLE if metavar in {"X", "N"} else str
+        choices = words.split()
+        form: dict[str, Any] = {"metavar": metavar, "default": choices[0] if choices else None}
+        form["type"] = click.Choice(choices) if len(choices) > 1 else kind
+        found = option(f"--{name.replace('_', '-')}", help=text, **form)(found)
     return cast(F, found)
 
 
@@ -314,11 +290,11 @@ def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
 
 def _help_of(name: str, *, shows_default: bool) -> str:
     """Return the help of an input, with its unit if it is a rate, its bounds and its default."""
-    declared = DECLARED[name]
-    rate = "rad per unit of time" if declared.unit == "rad/time" else ""
-    text = ", ".join(filter(None, (declared.meaning, rate, declared.bound)))
-    has_default = shows_default and declared.default is not None
-    ending = f"  [default: {declared.default:g}]" if has_default else ""
+    about = DECLARED[name]
+    rate = "rad per unit of time" if about.unit == "rad/time" else ""
+    text = ", ".join(filter(None, (about.meaning, rate, about.bound)))
+    has_default = shows_default and about.default is not None
+    ending = f"  [default: {about.default:g}]" if has_default else ""
     return f"{text[0].upper()}{text[1:]}.{ending}"
 
 

@@ -5,6 +5,7 @@ Help texts, tables of records, units, pictures and READMEs take the inputs from 
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -74,7 +75,7 @@ psidot0 | ψ'0 | precession rate at the start
 
 def declared(table: str) -> Iterator[list[str]]:
     """Yield the cells of a table, one row per line; indented lines continue the line before."""
-    for line in table.strip().replace("\n ", " ").split("\n"):
+    for line in re.sub("\n +", " ", table.strip()).split("\n"):
         yield [cell.strip() for cell in line.split("|")]
 
 
