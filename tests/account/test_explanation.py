@@ -9,6 +9,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from conftest import Lagtop
 from lagtop import Motion, Top, solve
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -158,3 +159,9 @@ def test_numbers_differ_in_as_many_digits_as_that_takes() -> None:
         low, high = re.findall(r"[\d.]+(?= and| deg)", summary(record, motion.facts))[:2]
         assert float(low) == 30.0 < float(high)
         assert float(high) == pytest.approx(record["theta_max_deg"], rel=1e-3)
+
+
+def test_a_number_beyond_the_doubles_has_digits_in_solve(lagtop: Lagtop) -> None:
+    """`explain` itself has no --digits."""
+    result = lagtop("explain", "precession_rate_elementary", "--g", 5e-324)
+    assert result.stderr.endswith(" in size, got 3.593e-326: use solve --digits N\n")
