@@ -15,6 +15,7 @@ from ..recordings.frames import alignment_of, frames_of, in_frames, turn_of
 from ..recordings.misreadings import BACKWARDS, Misreading, misreadings
 from ..recordings.options import Alignment
 from ..recordings.recording import Recording
+from ..top.top import Top
 from .differences import ExactMotion, errors, sizes, start_of
 from .engines import engines
 from .mistakes import OPPOSITE, Cause, estimated, of_clock, other_tops, percent, steps
@@ -57,14 +58,10 @@ class _Search:
     ) -> None:
         self.run, self.given, self.limit = run, exact, limit
         self.seen = seen if seen and seen.is_trusted else None
-        self.tops = self.others_of(Cause())
+        self.top, self.rate = exact.motion.top, sizes(exact.motion.top)[2]
+        self.tops = other_tops(self.top, left=run.align.left)
         self.written = [Cause(x.name, (x,)) for x in misreadings(run)]
         self.before = self.errors(Cause(), _SOME)
-
-    def others_of(self, cause: Cause) -> list[Cause]:
-        """Return the rows of the table that are tops other than that of a cause."""
-        exact = cause.exact or self.given
-        return other_tops(exact.motion.top, left=self.run.align.left)
 
     def few(self, cause: Cause, most: int) -> Recording:
         """Return some rows of the trajectory as it was meant."""
@@ -128,14 +125,15 @@ class _Search:
         others = [x for x in self.written if x not in units]
         early = [*self.placed(none), *units, *sign, *self.placed(sign)]
         yield [*early, *self.placed(none, in_other=True), *self.tops, *others], self.limit
-        inputs = estimated(self.given.motion.top, self.seen) if self.seen else []
+        inputs = estimated(self.top, self.seen) if self.seen else []
         singles = [*units, *self.tops, *others]
         if self.before[0] > self.limit:  # not only the rates are wrong
             yield [*self.rates_of_clock(), *inputs], self.limit
             yield from self.shifts()
             two = min(_EXPLAINS**2 * self.before.max(), self.limit)
             yield self.turned(), two
-            both = [y._replace(name=f"{y.name}; {x.name}") for x in sign for y in self.others_of(x)]
+            reverse = other_tops(Top(**self.top.inputs() | {"r0": -self.top.r0}))
+            both = [y._replace(name=f"{y.name}; {x.name}") for x in sign for y in reverse]
             yield [*both, *self.placed(singles), *self.placed(singles, in_other=True)], two
             yield self.pairs(singles), two
             yield self.engines()
@@ -155,7 +153,7 @@ class _Search:
 
         Coarse steps soon move away from the equations.
         """
-        end = self.run.t[0] + _SPIN / (abs(float(self.given.motion.top.r0)) or 1e-300)
+        end = self.run.t[0] + _SPIN / (abs(float(self.top.r0)) or 1e-300)
         first = self.run.read_as(t_max=end).within().few(4 * _SOME)
         seen, before = first.observed(), float(errors(self.given, first)[0].max())
         if seen.quaternion is None or not (np.diff(seen.t) > 0).all() or len(seen.t) < _FEW:
@@ -213,11 +211,6 @@ class _Search:
         for reach in (max(period, 10 * span / self.run.t.size), span):
             shift = self.clock("shift", 0.0, _STEP / self.rate, reach)
             yield [of_clock(f"the clock is shifted by {shift:.5g}", shift=shift)], self.limit
-
-    @property
-    def rate(self) -> float:
-        """The size of all rates of the top."""
-        return sizes(self.given.motion.top)[2]
 
     def clock(self, change: str, best: float, step: float, reach: float) -> float:
         """Return the change of the clock that explains most, at most `reach` from a first one."""

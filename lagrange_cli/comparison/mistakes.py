@@ -73,7 +73,7 @@ def steps() -> list[Cause]:
     return [of_clock(said(word), factor=x) for word, x in (("twice", 2.0), ("half", 0.5))]
 
 
-def other_tops(top: Top, *, left: bool) -> list[Cause]:
+def other_tops(top: Top, *, left: bool = False) -> list[Cause]:
     """Return the rows of the table that are tops other than this one.
 
     `left` says that the frame of the trajectory is left-handed.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop
 from engines import Body, Run, rk4
 from lagtop import Top
 
@@ -113,27 +113,6 @@ def test_quantities_that_agree_at_first_are_compared(lagtop: Lagtop, tmp_path: P
     found = lagtop("compare", "-", *OPTIONS, input=row)
     used = "Columns: t, theta, phi, psi. Not used: rv0, rv1, rv2."
     assert (found.exit_code, used in found.stdout) == (0, True)
-
-
-ROW = "t,theta\n0,30\n"
-
-
-@pytest.mark.parametrize(
-    ("text", "arguments", "code", "message"),
-    [
-        (ROW, "-", 2, "standard input can be read only once, got - twice"),
-        (ROW, "--step-sizes 1,2", 2, "--step-sizes must have one number > 0 per trajectory (1), "),
-        (ROW, "--step-sizes 0", 2, "--step-sizes must have one number > 0 per trajectory (1), "),
-        ("t,theta\n0,x\n", "", 65, "standard input, line 2, column 2: theta must be a finite"),
-        ("t,theta\n1e99,30\n", "", 65, "standard input: t must be finite and within 2^50 periods"),
-        ("t,thetadot,phidot,psidot\n0,0,50,0\n", "", 65, "standard input: angle_rates must come"),
-        ("t,theta\n", "", 65, "standard input must have at least one row"),
-    ],
-)
-def test_bad_requests_get_one_line(
-    lagtop: Lagtop, text: str, arguments: str, code: int, message: str
-) -> None:
-    assert_one_line(lagtop("compare", "-", *arguments.split(), input=text), code, message)
 
 
 def test_a_hint_names_the_options_of_the_command_line(lagtop: Lagtop, tmp_path: Path) -> None:

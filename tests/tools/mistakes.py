@@ -19,7 +19,7 @@ import numpy as np
 from lagtop import Comparison, Top, compare
 
 Scene = dict[str, float]
-_KEYS = "m", "A", "C", "s", "g", "r0", "theta0", "thetadot0", "psidot0", "end"
+_KEYS = "m", "A", "C", "s", "g", "r0", "theta0_deg", "thetadot0", "psidot0", "end"
 _SCENES: dict[str, tuple[float, ...]] = {
     "default": (1587.0, 39032.0, 17458.0, 4.0, 981.0, 50.0, 30.0, 0.0, 0.0, 2.0),
     "toy": (0.1, 3e-4, 6e-5, 0.04, 9.81, 150.0, 40.0, 0.0, 0.0, 1.0),
@@ -32,6 +32,14 @@ SCENES: dict[str, Scene] = {x: dict(zip(_KEYS, y, strict=True)) for x, y in _SCE
 MOON = 1.62 / 9.81
 FINE, COARSE = 0.02, 0.33
 """The angle by which the spin turns in a step."""
+
+
+def top_of(scene: Scene) -> Top:
+    """Return the top of a scene."""
+    return Top(**{key: x for key, x in scene.items() if key != "end"})
+
+
+State = list[float]
 
 
 class Engine(NamedTuple):
@@ -48,101 +56,118 @@ class Engine(NamedTuple):
     half: float = 0.5
     rule: str = ""
 
+    @property
+    def state(self) -> State:
+        """The attitude and the rates at the start."""
+        (p, q, r), cos, sin = self.rates, math.cos(self.tilt), math.sin(self.tilt)
+        rates = [p, cos * q - sin * r, sin * q + cos * r] if self.rule == "inertia" else [p, q, r]
+        return [math.cos(self.tilt / 2), math.sin(self.tilt / 2), 0.0, 0.0, *rates]
 
-class Mistake(NamedTuple):
-    """A mistake with a part of its name, and its true a, b and r0 over those of the scene."""
+    @property
+    def is_left(self) -> bool:
+        """Whether rates are multiplied on the left of the quaternion."""
+        return self.rule in {"side", "inertia"}
 
-    name: str
-    engine: Engine
-    ratios: tuple[float, float, float] | None = (1, 1, 1)
+    def slope(self, state: Any) -> State:
+        """Return the slope of a state."""
+        w, x, y, z, p, q, r = state
+        up_x, up_y = 2 * (x * z - w * y), 2 * (y * z + w * x)
+        if self.rule == "torque":  # that of the start, in the body
+            up_x, up_y = 0.0, math.sin(self.tilt)
+        if self.rule == "inertia":  # rates in space
+            up_x, up_y = -2 * (x * z + w * y), 2 * (w * x - y * z)
+        faster = [self.torque * up_y - self.twist * q * r, self.twist * p * r - self.torque * up_x]
+        pair = ((0, p, q, r), (w, x, y, z)) if self.is_left else ((w, x, y, z), (0, p, q, r))
+        turn = [self.half * v for v in _product(*pair)]
+        found = [*turn, faster[0] / self.A, faster[1] / self.A, 0.0]
+        found[4:] = [x - self.damping * y for x, y in zip(found[4:], (p, q, r), strict=True)]
+        return [self.clock * x for x in found]
+
+    def ratios(self, right: Engine) -> tuple[float, ...] | None:
+        """Return a, b and r0 over those of another engine, None if it moves no top."""
+
+        def numbers(e: Engine) -> tuple[float, ...]:
+            a, b = 2 * e.half * abs(e.torque) / e.A, (e.twist / e.A + 2 * e.half) * e.rates[2]
+            return a * e.clock**2, b * e.clock, 2 * e.half * e.rates[2] * e.clock
+
+        if self.rule or self.damping > 0.1:
+            return None
+        return tuple(x / y for x, y in zip(numbers(self), numbers(right), strict=True))
 
 
-def mistakes_of(scene: Scene) -> dict[str, Mistake]:
-    """Return mistakes, and pairs of them, by a short name."""
-    m, A, C, s, g, r0 = (scene[x] for x in _KEYS[:6])
-    tilt, slope, around = math.radians(scene["theta0"]), scene["thetadot0"], scene["psidot0"]
-    steiner, c, moved = m * s * s, C / A, (slope, around * math.sin(tilt))
-    right = Engine(A, C - A, m * g * s, tilt, (*moved, r0))
-    k = steiner / A
+def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
+    """Return engines with mistakes, and pairs of them, by a short name.
 
-    def weight(factor: float, of: Engine = right) -> Engine:
-        return of._replace(torque=factor * m * g * s)
+    Each comes with a part of the name that `compare` has for it, or "#" if it has none.
+    """
+    m, A, C, s, g, r0, degrees, slope, psidot, _ = scene.values()
+    tilt, steiner, w = math.radians(degrees), m * s * s, m * g * s
+    moved = slope, psidot * math.sin(tilt)
+    right = Engine(A, C - A, w, tilt, (*moved, r0))
+    lying, no_com = {"tilt": math.pi / 2 - tilt}, {"twist": -steiner}
 
-    def spin(r: float, of: Engine = right) -> Engine:
-        return of._replace(rates=(*moved, r))
+    def spin(r: float) -> dict[str, Any]:
+        return {"rates": (*moved, r)}
 
-    def moments(a: float = A, c: float = C, of: Engine = right) -> Engine:
-        return of._replace(A=a, twist=c - a)
+    def moments(a: float = A, c: float = C) -> dict[str, Any]:
+        return {"A": a, "twist": c - a}
 
-    lying = math.pi / 2 - tilt
-    vertical = (slope, moved[1] + r0 * math.sin(tilt), r0 * math.cos(tilt))
-    no_com = moments(c=A - steiner)
-    found = {
-        "right": Mistake("#", right),
-        "gravity x 2": Mistake("twice", weight(2), (2, 1, 1)),
-        "gravity / 2": Mistake("halved", weight(0.5), (0.5, 1, 1)),
-        "moon": Mistake("Moon", weight(MOON), (MOON, 1, 1)),
-        "no gravity": Mistake("g is 0", weight(0), (0, 1, 1)),
-        "gravity up": Mistake("upwards", weight(-1), (1, 1, 1)),
-        "g 10": Mistake("g is 10", weight(10 / 9.81), (10 / 9.81, 1, 1)),
-        "m + 7 %": Mistake("m, g or s is 7.0 %", weight(1.07), (1.07, 1, 1)),
-        "C = A": Mistake("(as if C = A)", moments(c=A), (1, 1 / c, 1)),
-        "gyro / 2": Mistake("halved", moments(c=(A + C) / 2), (1, (1 + c) / 2 / c, 1)),
-        "gyro reversed": Mistake("2A - C", moments(c=2 * A - C), (1, (2 - c) / c, 1)),
-        "no gyro com": Mistake("C = A - m s^2", no_com, (1, (1 - k) / c, 1)),
-        "A + 5 %": Mistake("A is", moments(1.05 * A), (1 / 1.05, 1 / 1.05, 1)),
-        "C - 5 %": Mistake("C is", moments(c=0.95 * C), (1, 0.95, 1)),
-        "C + 20 %": Mistake("C is", moments(c=1.2 * C), (1, 1.2, 1)),
-        "A + ms2": Mistake("(A + m s^2)", moments(A + steiner), (1 / (1 + k), 1 / (1 + k), 1)),
-        "A - ms2": Mistake("(A - m s^2)", moments(A - steiner), (1 / (1 - k), 1 / (1 - k), 1)),
-        "A, C exchanged": Mistake("exchanged", Engine(C, A - C, *right[2:]), (1 / c, 1 / c**2, 1)),
-        "vertical spin": Mistake(
-            "about the vertical",
-            right._replace(rates=vertical),
-            (1, math.cos(tilt), math.cos(tilt)),
+    found: dict[str, tuple[str, dict[str, Any]]] = {
+        "right": ("#", {}),
+        "gravity x 2": ("gravity acts twice", {"torque": 2 * w}),
+        "gravity / 2": ("halved", {"torque": w / 2}),
+        "moon": ("g is that of the Moon", {"torque": MOON * w}),
+        "no gravity": ("g is 0", {"torque": 0.0}),
+        "gravity up": ("g points upwards", {"torque": -w}),
+        "g 10": ("g is 10 (or m or s is wrong by the same factor)", {"torque": w * 10 / 9.81}),
+        "m + 7 %": ("m, g or s is 7.0 % more", {"torque": 1.07 * w}),
+        "C = A": ("the gyroscopic term is left out of Euler's equations", moments(c=A)),
+        "gyro / 2": ("halved", moments(c=(A + C) / 2)),
+        "gyro reversed": ("the gyroscopic term has the wrong sign", moments(c=2 * A - C)),
+        "no gyro com": ("(as if C = A - m s^2)", no_com),
+        "A + 5 %": ("A is", moments(1.05 * A)),
+        "C - 5 %": ("C is 5.0 % less", moments(c=0.95 * C)),
+        "C + 20 %": ("C is 20.0 % more", moments(c=1.2 * C)),
+        "A + ms2": ("(A + m s^2)", moments(A + steiner)),
+        "A - ms2": ("(A - m s^2)", moments(A - steiner)),
+        "A, C exchanged": ("A and C are exchanged", {"A": C, "twist": A - C}),
+        "vertical spin": (
+            "the spin r0 is about the vertical",
+            {"rates": (slope, moved[1] + r0 * math.sin(tilt), r0 * math.cos(tilt))},
         ),
-        "r0 sign": Mistake("r0 has the wrong sign", spin(-r0), (1, -1, -1)),
-        "r0 - 10 %": Mistake("r0 is", spin(0.9 * r0), (1, 0.9, 0.9)),
-        "damping .05": Mistake("#decay", right._replace(damping=0.05)),
-        "damping .5": Mistake("#decay", right._replace(damping=0.5), None),
-        "dt x 2": Mistake("twice as long", right._replace(clock=2), (4, 2, 2)),
-        "dt / 2": Mistake("half as long", right._replace(clock=0.5), (0.25, 0.5, 0.5)),
-        "half missing": Mistake("factor 1/2", right._replace(half=1), (2, (1 + c) / c, 2)),
-        "horizontal": Mistake("horizontal", right._replace(tilt=lying)),
-        "theta x 2": Mistake("doubled", right._replace(tilt=2 * tilt)),
-        "inertia": Mistake("does not turn", right._replace(rule="inertia"), None),
-        "side": Mistake("on the left", right._replace(rule="side"), None),
-        "torque": Mistake("torque", right._replace(rule="torque"), None),
-        "gravity x 2 + r0 sign": Mistake("twice; r0 has", weight(2, spin(-r0)), (2, -1, -1)),
-        "C = A + damping": Mistake("#decay", moments(c=A)._replace(damping=0.05), (1, 1 / c, 1)),
-        "gyro / 2 + horizontal": Mistake(
-            "#", moments(c=(A + C) / 2)._replace(tilt=lying), (1, (1 + c) / 2 / c, 1)
-        ),
-        "no gyro com + moon": Mistake("#", weight(MOON, no_com), (MOON, (1 - k) / c, 1)),
-        "A + 5 % + r0 sign": Mistake("#", spin(-r0, moments(1.05 * A)), (1 / 1.05, -1 / 1.05, -1)),
-        "C = A + gravity / 2": Mistake("#", weight(0.5, moments(c=A)), (0.5, 1 / c, 1)),
-        "C - 5 % + moon": Mistake("#", weight(MOON, moments(c=0.95 * C)), (MOON, 0.95, 1)),
-        "r0 - 10 % + g 10": Mistake("#", weight(10 / 9.81, spin(0.9 * r0)), (10 / 9.81, 0.9, 0.9)),
-        "A - ms2 + r0 sign": Mistake(
-            "s^2); r0", spin(-r0, moments(A - steiner)), (1 / (1 - k), -1 / (1 - k), -1)
-        ),
-        "C + 20 % + damping": Mistake(
-            "#decay", moments(c=1.2 * C)._replace(damping=0.05), (1, 1.2, 1)
-        ),
+        "r0 sign": ("r0 has the wrong sign", spin(-r0)),
+        "r0 - 10 %": ("r0 is", spin(0.9 * r0)),
+        "r0 rpm": ("r0 in radians was taken as rpm", spin(r0 * math.pi / 30)),
+        "r0 degrees": ("r0 in radians was taken as degrees", spin(math.radians(r0))),
+        "damping .05": ("#decay", {"damping": 0.05}),
+        "damping .5": ("#decay", {"damping": 0.5}),
+        "dt x 2": ("twice as long", {"clock": 2}),
+        "dt / 2": ("half as long", {"clock": 0.5}),
+        "half missing": ("the factor 1/2 is missing in the rate of the quaternion", {"half": 1}),
+        "horizontal": ("theta0 is measured from the horizontal", lying),
+        "theta x 2": ("theta0 is doubled", {"tilt": 2 * tilt}),
+        "inertia": ("does not turn", {"rule": "inertia"}),
+        "side": ("on the left", {"rule": "side"}),
+        "torque": ("torque", {"rule": "torque"}),
+        "gravity x 2 + r0 sign": ("twice; r0 has", {"torque": 2 * w} | spin(-r0)),
+        "C = A + damping": ("#decay", moments(c=A) | {"damping": 0.05}),
+        "gyro / 2 + horizontal": ("#", moments(c=(A + C) / 2) | lying),
+        "no gyro com + moon": ("#", no_com | {"torque": MOON * w}),
+        "A + 5 % + r0 sign": ("#", spin(-r0) | moments(1.05 * A)),
+        "C = A + gravity / 2": ("#", {"torque": w / 2} | moments(c=A)),
+        "C - 5 % + moon": ("#", {"torque": MOON * w} | moments(c=0.95 * C)),
+        "r0 - 10 % + g 10": ("#", {"torque": w * 10 / 9.81} | spin(0.9 * r0)),
+        "A - ms2 + r0 sign": ("s^2); r0", spin(-r0) | moments(A - steiner)),
+        "C + 20 % + damping": ("#decay", moments(c=1.2 * C) | {"damping": 0.05}),
     }
-    for name, r in (("rpm", r0 * math.pi / 30), ("degrees", math.radians(r0))):
-        found[f"r0 {name}"] = Mistake(f"taken as {name}", spin(r), (1, r / r0, r / r0))
-    if slope or around:
-        for name, first, second in (
-            ("thetadot0 is left out", 0.0, moved[1]),
-            ("psidot0 has the wrong sign", slope, -moved[1]),
-            ("psidot0 is left out", slope, 0.0),
+    if slope or psidot:
+        for name, rates in (
+            ("thetadot0 is left out", (0.0, moved[1])),
+            ("psidot0 has the wrong sign", (slope, -moved[1])),
+            ("psidot0 is left out", (slope, 0.0)),
         ):
-            found[name] = Mistake(name, right._replace(rates=(first, second, r0)))
-    return found
-
-
-State = list[float]
+            found[name] = name, {"rates": (*rates, r0)}
+    return {short: (name, right._replace(**x)) for short, (name, x) in found.items()}
 
 
 def _product(a: Any, b: Any) -> tuple[float, float, float, float]:
@@ -155,49 +180,31 @@ def _product(a: Any, b: Any) -> tuple[float, float, float, float]:
     )
 
 
-def _slope(e: Engine, state: State) -> State:
-    w, x, y, z, p, q, r = state
-    up_x, up_y = 2 * (x * z - w * y), 2 * (y * z + w * x)
-    if e.rule == "torque":  # that of the start, in the body
-        up_x, up_y = 0.0, math.sin(e.tilt)
-    if e.rule == "inertia":  # rates in space
-        up_x, up_y = -2 * (x * z + w * y), 2 * (w * x - y * z)
-    speed_up = (e.torque * up_y - e.twist * q * r) / e.A, (e.twist * p * r - e.torque * up_x) / e.A
-    is_left = e.rule in {"side", "inertia"}
-    pair = ((0, p, q, r), (w, x, y, z)) if is_left else ((w, x, y, z), (0, p, q, r))
-    turn = [e.half * v for v in _product(*pair)]
-    return [*turn, speed_up[0] - e.damping * p, speed_up[1] - e.damping * q, -e.damping * r]
-
-
-def _rk4(e: Engine, y: State, h: float) -> State:
+def rk4(e: Engine, y: State, h: float) -> State:
     def moved(by: float, slope: State) -> State:
         return [u + by * v for u, v in zip(y, slope, strict=True)]
 
-    a = _slope(e, y)
-    b = _slope(e, moved(h / 2, a))
-    c = _slope(e, moved(h / 2, b))
-    d = _slope(e, moved(h, c))
+    a = e.slope(y)
+    b = e.slope(moved(h / 2, a))
+    c = e.slope(moved(h / 2, b))
+    d = e.slope(moved(h, c))
     return moved(h / 6, [i + 2 * j + 2 * k + n for i, j, k, n in zip(a, b, c, d, strict=True)])
 
 
-def _semi_implicit(e: Engine, y: State, h: float) -> State:
-    rates = [u + h * v for u, v in zip(y[4:], _slope(e, y)[4:], strict=True)]
+def semi_implicit(e: Engine, y: State, h: float) -> State:
+    rates = [u + h * v for u, v in zip(y[4:], e.slope(y)[4:], strict=True)]
     size = math.hypot(*rates) or 1e-300
-    half = e.half * h * size
+    half = e.half * e.clock * h * size
     turn = math.cos(half), *(math.sin(half) / size * x for x in rates)
-    is_left = e.rule in {"side", "inertia"}
-    return [*(_product(turn, y[:4]) if is_left else _product(y[:4], turn)), *rates]
+    return [*(_product(turn, y[:4]) if e.is_left else _product(y[:4], turn)), *rates]
 
 
 def run(e: Engine, h: float, end: float, every: int, method: Any) -> Any:
     """Return the times and quaternions of every so many steps."""
-    y = [math.cos(e.tilt / 2), math.sin(e.tilt / 2), 0.0, 0.0, *e.rates]
-    if e.rule == "inertia":
-        (p, q, r), cos, sin = e.rates, math.cos(e.tilt), math.sin(e.tilt)
-        y[4:] = [p, cos * q - sin * r, sin * q + cos * r]
+    y = e.state
     rows = [y[:4]]
     for i in range(1, round(end / h) + 1):
-        y = method(e, y, h * e.clock)
+        y = method(e, y, h)
         size = math.hypot(*y[:4])
         y[:4] = [x / size for x in y[:4]]
         if i % every == 0:
@@ -210,7 +217,10 @@ def constrained(
 ) -> Any:
     """Return a run about the centre of mass; an impulse keeps the pivot (Baumgarte, 0.2)."""
     m, A, C, s, g = (scene[x] for x in _KEYS[:5])
-    moments, tilt = np.array([A - m * s * s, A - m * s * s, c * C]), math.radians(scene["theta0"])
+    moments, tilt = (
+        np.array([A - m * s * s, A - m * s * s, c * C]),
+        math.radians(scene["theta0_deg"]),
+    )
     q = np.array([math.cos(tilt / 2), math.sin(tilt / 2), 0.0, 0.0])
     rates = [scene["thetadot0"], scene["psidot0"] * math.sin(tilt), scene["r0"]]
 
@@ -246,14 +256,14 @@ def constrained(
     return np.arange(len(rows)) * h * every, np.array(rows)
 
 
-def runs(scene: Scene) -> Iterator[tuple[str, str, Mistake, Any]]:
-    """Yield the method, the kind of step, the mistake, and its run."""
+def runs(scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    """Yield the method with the kind of step, the short name of a mistake, and its run."""
     found, r0, end = mistakes_of(scene), scene["r0"], scene["end"]
     for kind, h in (("fine", FINE / r0), ("coarse", COARSE / r0)):
         every = max(1, round(end / h / 400)) if kind == "fine" else 1
-        for method in (_rk4, _semi_implicit):
-            for name, x in found.items():
-                yield f"{method.__name__} {kind}", name, x, run(x.engine, h, end, every, method)
+        for method in (rk4, semi_implicit):
+            for bug, (_, engine) in found.items():
+                yield f"{method.__name__} {kind}", bug, run(engine, h, end, every, method)
         constraints: dict[str, dict[str, Any]] = {
             "right": {},
             "no gyro com": {"twist": False},
@@ -261,49 +271,46 @@ def runs(scene: Scene) -> Iterator[tuple[str, str, Mistake, Any]]:
             "no gravity": {"weight": 0.0},
             "C + 20 %": {"c": 1.2},
         }
-        for name, how in constraints.items():
-            yield f"_constraint {kind}", name, found[name], constrained(scene, h, every, **how)
+        for bug, how in constraints.items():
+            yield f"_constraint {kind}", bug, constrained(scene, h, every, **how)
 
 
-def outcome(found: Comparison, mistake: Mistake, tolerance: float) -> str:
+def outcome(found: Comparison, name: str, true: tuple[float, ...] | None, tolerance: float) -> str:
     """Return the outcome of a comparison."""
     names, numbers = (found.cause or "").split("; or "), found.numbers or ""
     estimated = "(m, g or s|A|C|r0) is (wrong|[0-9.]* %)"
-    got = "none"
-    if found.cause and mistake.name[0] != "#" and any(mistake.name in x for x in names):
-        got = "name" if len(names) == 1 else "several"
-    elif found.cause and not all(re.match(estimated, x) for x in names):
-        got = "WRONG" if len(names) == 1 else "wrong several"
-    elif mistake.ratios and found.a_ratio is not None and found.b_ratio is not None:
-        ratios = zip((found.a_ratio, found.b_ratio), mistake.ratios[:2], strict=True)
+    if found.verdict == "fine" and name == "#":
+        return "name"
+    if found.cause and name[0] != "#" and any(name in x for x in names):
+        return "name" if len(names) == 1 else "several"
+    if found.cause and not all(re.match(estimated, x) for x in names):
+        return "WRONG" if len(names) == 1 else "wrong several"
+    is_said = "decay" in numbers or "decay" not in name
+    if true and found.a_ratio is not None and found.b_ratio is not None:
+        ratios = zip((found.a_ratio, found.b_ratio), true[:2], strict=True)
         is_right = all(abs(x - y) <= tolerance * max(abs(y), 0.25) for x, y in ratios)
-        is_right &= "decay" in numbers or "decay" not in mistake.name
-        got = "numbers" if is_right else "numbers off"
-    elif "smaller steps" in numbers:
-        got = "steps"
-    elif mistake.ratios is None and "decay" in numbers:
-        got = "numbers"
-    return "name" if found.verdict == "fine" and mistake.name == "#" else got
+        return "numbers" if is_right and is_said else "numbers off"
+    if not true and is_said and "decay" in name:
+        return "numbers"
+    return "steps" if "smaller steps" in numbers else "none"
 
 
 def main() -> None:
     """Print the score, and what is not right."""
     tally, seconds = defaultdict[str, Counter[str]](Counter), []
-    only = sys.argv[1:]
-    for name in only or SCENES:
-        scene = SCENES[name]
-        inputs = {x: scene[x] for x in _KEYS[:6]}
-        inputs |= {"theta0_deg": scene["theta0"], "thetadot0": scene["thetadot0"]}
-        top = Top(**inputs, psidot0=scene["psidot0"])
-        for method, bug, mistake, (t, q) in runs(scene):
+    for scene in sys.argv[1:] or SCENES:
+        top, mistakes = top_of(SCENES[scene]), mistakes_of(SCENES[scene])
+        for method, bug, (t, q) in runs(SCENES[scene]):
+            name, engine = mistakes[bug]
             before = time.process_time()
             found = compare(top, t, quaternion=np.round(q, 10))
             seconds.append(time.process_time() - before)
-            got = outcome(found, mistake, 0.02 if "fine" in method else 0.12)
+            true = engine.ratios(mistakes["right"][1])
+            got = outcome(found, name, true, 0.02 if "fine" in method else 0.12)
             tally[method][got] += 1
             if got not in {"name", "numbers"}:
-                true = mistake.ratios and tuple(round(x, 4) for x in mistake.ratios)
-                print(f"{got:14}{name} {method}, {bug} {true}: {found.cause} | {found.numbers}")
+                said = true and tuple(round(x, 4) for x in true)
+                print(f"{got:14}{scene} {method}, {bug} {said}: {found.cause} | {found.numbers}")
     for method, counts in tally.items():
         print(f"{method:24}{counts.total():4}", dict(counts.most_common()))
     seconds.sort()
