@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 import shlex
-from contextlib import chdir
+from contextlib import chdir, suppress
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -61,7 +61,7 @@ def bytes_of(text: str) -> bytes:
 FILES = {
     name: bytes_of(text) for name, text in re.findall(r"^File (\S+): (.*)", TEXT, re.MULTILINE)
 }
-"""Files beside an empty `folder` in the folder in which the commands run; none is changed."""
+"""Files beside an empty `folder` and a link to itself, `loop`, where commands run; none changes."""
 
 
 def said_by(line: str) -> str:
@@ -88,12 +88,14 @@ def said_by(line: str) -> str:
 def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "folder").mkdir(exist_ok=True)
+    with suppress(FileExistsError):
+        (tmp_path / "loop").symlink_to("loop")
     for name, content in FILES.items():
         (tmp_path / name).write_bytes(content)
     found = said_by(line)
     assert found.isprintable()
     assert found == said or re.fullmatch(".*".join(map(re.escape, said.split("..."))), found)
-    left = {x.name: x.read_bytes() for x in tmp_path.iterdir() if x.name != "folder"}
+    left = {x.name: x.read_bytes() for x in tmp_path.rglob("*") if x.is_file()}
     assert left == FILES
 
 

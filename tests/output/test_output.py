@@ -263,31 +263,6 @@ def test_a_file_is_replaced_only_on_success(tmp_path: Path) -> None:
     assert target.stat().st_mode == (tmp_path / "usual").stat().st_mode
 
 
-@pytest.mark.parametrize(
-    ("path", "why"),
-    [
-        ("folder", "Is a directory"),
-        ("nofile/", "Is a directory"),
-        ("loop", "Too many levels of symbolic links"),
-        ("", "No such file or directory"),
-        ("none/x", "No such file or directory"),
-        ("file/x", "Not a directory"),
-    ],
-)
-def test_places_that_a_shell_refuses(
-    path: str, why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "loop").symlink_to("loop")
-    (tmp_path / "folder").mkdir()
-    (tmp_path / "file").touch()
-    before = sorted(tmp_path.rglob("*"))
-    with pytest.raises(CannotWriteError) as error:
-        write_x(path)
-    assert str(error.value) == f"cannot write {path or repr(path)}: {why}"
-    assert sorted(tmp_path.rglob("*")) == before
-
-
 def test_a_fifo_and_a_device_are_written_in_place(tmp_path: Path) -> None:
     fifo = tmp_path / "fifo"
     os.mkfifo(fifo)
