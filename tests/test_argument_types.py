@@ -11,7 +11,7 @@ from typing import Any
 import lagtop
 import numpy as np
 import pytest
-from conftest import ROOT, Lagtop, assert_one_line
+from conftest import ROOT
 from lagtop import LagtopError, Top, solve
 
 from lagrange_cli.names import check_names, split_names
@@ -70,11 +70,3 @@ def test_names_that_are_fine() -> None:
     assert check_names("keys", ("beta", "alpha"), KNOWN) == ["beta", "alpha"]
     assert check_names("keys", dict.fromkeys(KNOWN), KNOWN) == KNOWN  # type: ignore[arg-type]
     assert split_names("alpha, bottom pass,beta") == ["alpha", "bottom pass", "beta"]
-
-
-@pytest.mark.parametrize("words", ["sweep --keys r0", "table --columns theta"])
-def test_commands_name_the_option_of_a_wrong_list(words: str, lagtop: Lagtop) -> None:
-    known, option = words.rsplit(maxsplit=1)[-1], words.split()[1]
-    for names in ("", f"{known},", f"{known},x", f"{known} {known}", f"{known},{known}"):
-        result = lagtop(*words.split()[:-1], names)
-        assert_one_line(result, 2, f"{option} must ")
