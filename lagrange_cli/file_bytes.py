@@ -76,11 +76,6 @@ def _read_whole(file: Any, most: int) -> bytes:
     return b"".join(chunks)
 
 
-def read_text(path: str) -> str:
-    """Return the text of a file, as `read_bytes` and `decoded` do."""
-    return decoded(read_bytes(path), shown_path(path))
-
-
 def decoded(content: bytes, name: str) -> str:
     r"""Return UTF-8 text, or marked UTF-16 text, with `\n` as the only line end.
 

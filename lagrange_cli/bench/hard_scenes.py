@@ -21,7 +21,7 @@ from ..errors import LagtopError
 from ..solver.solve import solve
 from ..top.inputs import INPUTS, declared
 from ..top.top import Top
-from .reference import exact_motion
+from .reference import check
 
 Scene = dict[str, Any]
 Kind = Callable[[Random], Scene]
@@ -240,8 +240,6 @@ NUTATING_KINDS = _kinds(_NUTATING)
 """The kinds whose tops nearly all nutate under a torque, by name."""
 KINDS = NUTATING_KINDS | _kinds(_OTHERS)
 """All kinds but CORNERS and those of `stability`."""
-HARD_KINDS = _kinds(_STIFF_AND_EXTREME)
-"""The kinds of `stability`."""
 
 
 def in_doubles(scene: Scene) -> Scene:
@@ -250,9 +248,12 @@ def in_doubles(scene: Scene) -> Scene:
 
 
 def nutating(kind: str, rng: Random) -> Scene:
-    """Return the inputs, as doubles, of a scene of a kind that nutates under a torque."""
+    """Return the inputs, as doubles, of a scene of a kind that nutates under a torque.
+
+    The kind is any of KINDS, or a kind of `stability`.
+    """
     while True:
-        scene = in_doubles(NUTATING_KINDS[kind](rng))
+        scene = in_doubles(_scene_of(kind, rng))
         with suppress(LagtopError):
-            exact_motion(solve(Top(**scene)))
+            check(solve(Top(**scene)))
             return scene

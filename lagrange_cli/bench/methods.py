@@ -22,7 +22,6 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inverse.motions import angles
 from ..solver.solve import Motion, solve
-from ..top.top import Top
 
 TIGHTEST = 3e-14
 """Least relative tolerance that SciPy accepts."""
@@ -56,11 +55,11 @@ class Method(NamedTuple):
     """Whether steps have one length, which divides the gaps between the times."""
 
 
-def problem_of(top: Top) -> tuple[Array, Slope]:
+def problem_of(motion: Motion) -> tuple[Array, Slope]:
     """Return the initial state (p, q, w, x, y, z) and Euler's equations, in doubles."""
-    a, b, r0, tilt = *constants(top), float(top.r0), top.exact_tilt.doubles()
-    rates = float(top.thetadot0), float(top.psidot0) * tilt[0]
-    twist = r0 - b
+    top, a, b, r0 = motion.top, float(motion.a), float(motion.b), float(motion.top.r0)
+    sine, _, half_sine, half_cosine = top.exact_tilt.doubles()
+    twist, rates = r0 - b, (float(top.thetadot0), float(top.psidot0) * sine)
 
     def slope(_: float, state: Sequence[Any]) -> list[Any]:
         p, q, w, x, y, z = state
@@ -73,13 +72,7 @@ def problem_of(top: Top) -> tuple[Array, Slope]:
             (w * r0 + x * q - y * p) / 2,
         ]
 
-    return np.array([*rates, tilt[3], tilt[2], 0.0, 0.0]), slope
-
-
-def constants(top: Top) -> tuple[float, float]:
-    """Return a = 2 m g s/A and b = C r0/A in doubles."""
-    A = float(top.A)
-    return 2 * float(top.m) * float(top.g) * float(top.s) / A, float(top.C) * float(top.r0) / A
+    return np.array([*rates, half_cosine, half_sine, 0.0, 0.0]), slope
 
 
 def counted(slope: Slope, limit: float) -> tuple[Callable[[float, Array], Array], list[int]]:
@@ -115,14 +108,12 @@ def scipy_special(motion: Motion, __: Any) -> Sample:
     It subtracts no close numbers.  What it cannot do: next to the unstable upright position the
     rounding of m = k^2, which `ellipj` takes, remains; and errors grow with time.
     """
-    top, (a, b), r0 = motion.top, constants(motion.top), float(motion.top.r0)
-    sine, _, half_sine, half_cosine = top.exact_tilt.doubles()
-    rates = float(top.thetadot0), float(top.psidot0) * sine
-    state = np.array([[a, b, half_sine, half_cosine, *rates]])
+    (start, _), a, b = problem_of(motion), float(motion.a), float(motion.b)
+    state, twist = np.array([[a, b, start[3], start[2], *start[:2]]]), float(motion.top.r0) - b
 
     def sample(t: Array, _: float) -> Sampled:
         theta, phi, psi = angles(state, t)[:, 0]
-        return [theta, phi + (r0 - b) * t, psi], None
+        return [theta, phi + twist * t, psi], None
 
     return sample
 
@@ -131,7 +122,7 @@ def scipy_method(name: str, motion: Motion, tolerance: float) -> Sample:
     """Return a method of SciPy's solve_ivp, with its own interpolation between the steps."""
     from scipy.integrate import solve_ivp
 
-    start, equations = problem_of(motion.top)
+    start, equations = problem_of(motion)
 
     def sample(t: Array, limit: float) -> Sampled:
         slope, calls = counted(equations, limit)
@@ -153,7 +144,7 @@ def fixed_steps(times: Array, longest: float) -> Iterator[tuple[int, float]]:
 
 def rk4(motion: Motion, per_period: int) -> Sample:
     """Return the classical Runge-Kutta method with equal steps between two times."""
-    (start, equations), period = problem_of(motion.top), float(motion.T_nutation or 1)
+    (start, equations), period = problem_of(motion), float(motion.T_nutation or 1)
 
     def sample(t: Array, limit: float) -> Sampled:
         (f, calls), state, rows = counted(equations, limit), start, []
@@ -175,7 +166,7 @@ def taylor(motion: Motion, tolerance: float) -> Sample:
 
     heyoka.llvm_state.clear_memcache()  # so that each set-up compiles
     heyoka.llvm_state.set_diskcache_enabled(False)
-    start, slope = problem_of(motion.top)
+    start, slope = problem_of(motion)
     fine = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
     names = heyoka.make_vars(*"pqwxyz")
     system = list(zip(names, slope(0.0, names), strict=True))
@@ -206,9 +197,9 @@ def mujoco(scheme: str, motion: Motion, per_period: int) -> Sample:
     """
     import mujoco as engine
 
-    top, period, (start, _) = motion.top, float(motion.T_nutation or 1), problem_of(motion.top)
+    top, period, (start, _) = motion.top, float(motion.T_nutation or 1), problem_of(motion)
     s, C = float(top.s) * math.sqrt(float(top.m) / float(top.A)), float(top.C) / float(top.A)
-    g = constants(top)[0] / 2 / s * period**2
+    g = float(motion.a) / 2 / s * period**2
     if C > 2 * (1 - s * s):
         raise LagtopError("MuJoCo needs C <= 2 (A - m s^2)")
     model = engine.MjModel.from_xml_string(

@@ -120,10 +120,15 @@ class Reference:
             return upright[0], sin * mpmath.cos(minus), sin * mpmath.sin(minus), upright[1]
 
 
-def exact_motion(motion: Motion) -> Reference:
-    """Return the reference of a motion; raise LagtopError if it cannot check the motion."""
+def check(motion: Motion) -> None:
+    """Raise LagtopError for a motion that the reference cannot compute."""
     if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
         raise LagtopError(f"the top must nutate, but its regime is {motion.regime.value!r}")
     if not motion.facts.off_poles:
         raise LagtopError("the axis must not pass exactly through the vertical")
+
+
+def exact_motion(motion: Motion) -> Reference:
+    """Return the reference of a motion.  Raises LagtopError (see `check`)."""
+    check(motion)
     return Reference(motion.top)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from itertools import chain, islice, product, repeat
+from itertools import product
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -16,10 +16,9 @@ from ..names import check_names
 from ..output.report import Report
 from ..output.terminal import Progress, silent
 from ..plot.style import LIGHT
-from ..solver.facts import Regime
 from ..solver.solve import Motion, solve
 from ..top.top import Top
-from .hard_scenes import HARD_KINDS, in_doubles
+from .hard_scenes import nutating
 from .measure import ERROR, Row, looks, measure, panels_of, report_of, task_of
 from .methods import METHODS
 from .reference import Reference, rotation_angle
@@ -67,7 +66,7 @@ def stability(
 
     Each method runs at its tightest setting.  Raises LagtopError for an unknown kind.
     """
-    names = list(HARD_KINDS) if kinds is None else check_names("kinds", kinds, HARD_KINDS)
+    names = list(FIXED) if kinds is None else check_names("kinds", kinds, FIXED)
     scenes = [(kind, x) for kind in names for x in motions(kind, samples, seed)]
     rows = [row for kind, motion in progress(scenes, "scenes") for row in compared(kind, motion)]
     found = [
@@ -78,12 +77,9 @@ def stability(
 
 
 def motions(kind: str, samples: int, seed: int) -> list[Motion]:
-    """Return the fixed motions of a kind, and random ones that nutate under a torque."""
-    fixed, rng = [UNIT | scene for scene in FIXED[kind]], Random(f"{seed} {kind}")
-    scenes = chain(fixed, (in_doubles(HARD_KINDS[kind](rng)) for _ in repeat(None)))
-    tops = (Top(**x) for x in scenes)
-    nutating = (x for x in map(solve, tops) if x.regime in (Regime.REGULAR, Regime.NO_SPIN))
-    return list(islice(nutating, len(fixed) + samples))
+    """Return the fixed motions of a kind, and random ones."""
+    rng, fixed = Random(f"{seed} {kind}"), [UNIT | scene for scene in FIXED[kind]]
+    return [solve(Top(**x)) for x in [*fixed, *(nutating(kind, rng) for _ in range(samples))]]
 
 
 def compared(kind: str, motion: Motion) -> Iterator[Row]:

@@ -6,7 +6,6 @@ its own and does not affect other rows.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
@@ -192,4 +191,4 @@ def _known_inputs(headings: Sequence[str]) -> int:
 
 def _plain(column: str) -> str:
     """Return a name without easily mistaken parts: case, underscores, the 0 of theta0, the unit."""
-    return re.sub("_|0|deg$|rad$", "", name_and_unit(column)[0].lower()) or column
+    return plain_name(column)[0].replace("0", "") or column
