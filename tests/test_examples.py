@@ -21,12 +21,15 @@ import numpy as np
 import pint
 import pytest
 from click.testing import CliRunner
-from lagtop import LagtopError
+from lagtop import LagtopError, Top, solve
+from scenes import UNIT
 from uncertainties import ufloat
 
 from lagrange_cli.cli.app import main
 from lagrange_cli.names import check_names
+from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top import values
+from lagrange_cli.top.units import Units
 
 PAGES = Path(__file__).parent / "examples"
 PATH = PAGES / "wording.txt"
@@ -99,16 +102,42 @@ def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.Mon
     assert left == FILES
 
 
-NUMBERS = re.findall(
-    r"^(\$ .*)\n((?:.+\n)+)", (PAGES / "numbers.txt").read_text(encoding="utf-8"), re.MULTILINE
-)
+KNOWN = (PAGES / "numbers.txt").read_text(encoding="utf-8")
+NUMBERS = re.findall(r"^((?:\$|>>>) .*)\n((?:.+\n)+)", KNOWN, re.MULTILINE)
+"""Command lines and calls, and all that they print; `...` stands for any cell."""
+
+
+def unit(**inputs: Any) -> Top:
+    """Return a top whose body and gravity are 1, unless another is given."""
+    return Top(**UNIT | inputs)
+
+
+def numbers(top: Top, keys: str) -> str:
+    """Return numbers of a motion, as doubles."""
+    return " ".join(str(getattr(solve(top), key)) for key in keys.split())
+
+
+def digits(top: Top, count: int, keys: str) -> str:
+    """Return numbers of a motion, in decimals."""
+    record = solve(top).record(digits=count, keys=keys.split())
+    return " ".join(record[key] for key in keys.split())
+
+
+def row(top: Top, t: str, columns: str) -> str:
+    """Return columns at a time in one digit, with radians."""
+    table = ProvedTable(solve(top), columns.split(), 1, units=Units(radians=True))
+    return " ".join(number.value for number in table.row(Fraction(t)))
 
 
 @pytest.mark.parametrize(("line", "shown"), NUMBERS)
 def test_numbers(line: str, shown: str) -> None:
-    ended = CliRunner(catch_exceptions=False).invoke(main, shlex.split(line)[2:])
-    assert ended.exit_code == 0, ended.stderr
-    assert re.fullmatch("[^,\n]+".join(map(re.escape, shown.split("..."))), ended.stdout)
+    if line.startswith(">>> "):
+        printed = f"{eval(line[4:])}\n"
+    else:
+        ended = CliRunner(catch_exceptions=False).invoke(main, shlex.split(line)[2:])
+        assert ended.exit_code == 0, ended.stderr
+        printed = ended.stdout
+    assert re.fullmatch("[^,\n]+".join(map(re.escape, shown.split("..."))), printed)
 
 
 def rewrite() -> None:
