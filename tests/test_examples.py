@@ -20,40 +20,27 @@ import lagtop
 import numpy as np
 import pint
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 from lagtop import LagtopError, Top, solve
 from scenes import UNIT
 from uncertainties import ufloat
 
+from lagrange_cli.arithmetic.enclosures import text_of
 from lagrange_cli.cli.app import main
+from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.names import check_names
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top import values
 from lagrange_cli.top.units import Units
 
 PAGES = Path(__file__).parent / "examples"
-PATH = PAGES / "wording.txt"
-
-
-def sentence(words: str) -> str:
-    """Return the sentence before the record that `lagtop solve` shows."""
-    shown = CliRunner(catch_exceptions=False).invoke(main, ["solve", *shlex.split(words)]).stdout
-    return " ".join(shown.partition("\n\n")[0].split())
-
-
-NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
-NAMES |= vars(values) | {"lagtop": lagtop, "np": np, "math": math, "pint": pint, "ufloat": ufloat}
-NAMES |= {
-    "Decimal": Decimal,
-    "Fraction": Fraction,
-    "check_names": check_names,
-    "sentence": sentence,
-}
-
-
-TEXT = PATH.read_text(encoding="utf-8")
-EXAMPLES = re.findall(r"^((?:\$|>>>) .*)\n(.*)", TEXT, re.MULTILINE)
+WORDING, KNOWN = (
+    (PAGES / f"{name}.txt").read_text(encoding="utf-8") for name in ("wording", "numbers")
+)
+MESSAGES = re.findall(r"^((?:\$|>>>) .*)\n(.*)", WORDING, re.MULTILINE)
 """Command lines and calls, and what they end with; `...` stands for any words."""
+NUMBERS = re.findall(r"^((?:\$|>>>) .*)\n((?:.+\n)+)", KNOWN, re.MULTILINE)
+"""Command lines and calls, and all that they print; `...` stands for any cell."""
 
 
 def bytes_of(text: str) -> bytes:
@@ -61,50 +48,16 @@ def bytes_of(text: str) -> bytes:
     return text.encode().decode("unicode_escape").encode("latin-1")
 
 
-FILES = {
-    name: bytes_of(text) for name, text in re.findall(r"^File (\S+): (.*)", TEXT, re.MULTILINE)
-}
+FILES = {x: bytes_of(text) for x, text in re.findall(r"^File (\S+): (.*)", WORDING, re.MULTILINE)}
 """Files beside an empty `folder` and a link to itself, `loop`, where commands run; none changes."""
 
 
-def said_by(line: str) -> str:
-    """Return the last line of a command, with its exit code if that is not 2, or an exception."""
-    if line.startswith(">>> "):
-        try:
-            return str(eval(line[4:], NAMES))
-        except (LagtopError, TypeError, AttributeError) as error:
-            return f"{type(error).__name__}: {error}"
-    printed, _, command = line.removeprefix("$ ").rpartition(" | ")
-    given = bytes_of(shlex.split(printed)[1]) if printed else None
-    ended = CliRunner(catch_exceptions=False).invoke(main, shlex.split(command)[1:], input=given)
-    *_, said = ended.stderr.splitlines()
-    if not ended.exit_code:
-        assert said.startswith("Warning: ")
-        return said
-    assert said.startswith("Error: ")
-    assert ended.stdout == ""
-    return said if ended.exit_code == 2 else f"{said} [{ended.exit_code}]"
+# Functions that the examples call
 
 
-@pytest.mark.filterwarnings("ignore::lagrange_cli.MixedBodyWarning")
-@pytest.mark.parametrize(("line", "said"), EXAMPLES)
-def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "folder").mkdir(exist_ok=True)
-    with suppress(FileExistsError):
-        (tmp_path / "loop").symlink_to("loop")
-    for name, content in FILES.items():
-        (tmp_path / name).write_bytes(content)
-    found = said_by(line)
-    assert found.isprintable()
-    assert found == said or re.fullmatch(".*".join(map(re.escape, said.split("..."))), found)
-    left = {x.name: x.read_bytes() for x in tmp_path.rglob("*") if x.is_file()}
-    assert left == FILES
-
-
-KNOWN = (PAGES / "numbers.txt").read_text(encoding="utf-8")
-NUMBERS = re.findall(r"^((?:\$|>>>) .*)\n((?:.+\n)+)", KNOWN, re.MULTILINE)
-"""Command lines and calls, and all that they print; `...` stands for any cell."""
+def sentence(words: str) -> str:
+    """Return the sentence before the record that `lagtop solve` shows."""
+    return " ".join(ended(f"lagtop solve {words}").stdout.partition("\n\n")[0].split())
 
 
 def unit(**inputs: Any) -> Top:
@@ -129,27 +82,88 @@ def row(top: Top, t: str, columns: str) -> str:
     return " ".join(number.value for number in table.row(Fraction(t)))
 
 
+def uncertain(text: str) -> str:
+    """Return an uncertain number as fractions, read as one value and as the points of a range."""
+    value = values.parse_value("m", text, uncertain=True)
+    points = values.parse_value("m", text, values.parse_values, uncertain=True)
+    assert (points.number.exact, points.std) == ([value.number], value.std)
+    return f"{value.number} +/- {value.std}"
+
+
+NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
+NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
+NAMES |= {x.__name__: x for x in (sentence, unit, numbers, digits, row, uncertain)}
+NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
+
+
+# The tests
+
+
+def ended(command: str) -> Result:
+    """Return the end of a command line, perhaps after `printf ... |`."""
+    printed, _, words = command.rpartition(" | ")
+    given = bytes_of(shlex.split(printed)[1]) if printed else None
+    return CliRunner(catch_exceptions=False).invoke(main, shlex.split(words)[1:], input=given)
+
+
+def said_by(line: str) -> str:
+    """Return the last line of a command, with its exit code if that is not 2, or an exception."""
+    if line.startswith(">>> "):
+        try:
+            return str(eval(line[4:], NAMES))
+        except (LagtopError, TypeError, AttributeError) as error:
+            return f"{type(error).__name__}: {error}"
+    end = ended(line.removeprefix("$ "))
+    *_, said = end.stderr.splitlines()
+    if not end.exit_code:
+        assert said.startswith("Warning: ")
+        return said
+    assert said.startswith("Error: ")
+    assert end.stdout == ""
+    return said if end.exit_code == 2 else f"{said} [{end.exit_code}]"
+
+
+def matches(shown: str, found: str, blank: str) -> bool:
+    """Return whether a text is as shown, with `blank` in place of three dots."""
+    return bool(re.fullmatch(blank.join(map(re.escape, shown.split("..."))), found))
+
+
+@pytest.mark.filterwarnings("ignore::lagrange_cli.MixedBodyWarning")
+@pytest.mark.parametrize(("line", "said"), MESSAGES)
+def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir(exist_ok=True)
+    with suppress(FileExistsError):
+        (tmp_path / "loop").symlink_to("loop")
+    for name, content in FILES.items():
+        (tmp_path / name).write_bytes(content)
+    found = said_by(line)
+    assert found.isprintable()
+    assert found == said or matches(said, found, ".*")
+    left = {x.name: x.read_bytes() for x in tmp_path.rglob("*") if x.is_file()}
+    assert left == FILES
+
+
 @pytest.mark.parametrize(("line", "shown"), NUMBERS)
 def test_numbers(line: str, shown: str) -> None:
     if line.startswith(">>> "):
-        printed = f"{eval(line[4:])}\n"
+        assert f"{eval(line[4:], NAMES)}\n" == shown
     else:
-        ended = CliRunner(catch_exceptions=False).invoke(main, shlex.split(line)[2:])
-        assert ended.exit_code == 0, ended.stderr
-        printed = ended.stdout
-    assert re.fullmatch("[^,\n]+".join(map(re.escape, shown.split("..."))), printed)
+        end = ended(line.removeprefix("$ "))
+        assert end.exit_code == 0, end.stderr
+        assert matches(shown, end.stdout, "[^,\n]+")
 
 
 def rewrite() -> None:
     """Put the messages that are no longer as shown into the file."""
-    text = TEXT
+    text = WORDING
     with TemporaryDirectory() as folder, chdir(folder):
-        for line, said in EXAMPLES:
+        for line, said in MESSAGES:
             try:
                 test_a_message(line, said, Path(folder), pytest.MonkeyPatch())
             except AssertionError:
                 text = text.replace(f"{line}\n{said}\n", f"{line}\n{said_by(line)}\n", 1)
-    PATH.write_text(text, encoding="utf-8")
+    (PAGES / "wording.txt").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

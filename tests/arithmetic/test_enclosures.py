@@ -222,19 +222,6 @@ def test_digits_are_those_of_mpmath() -> None:
             assert text_of(decimal, digits) == shown
 
 
-@pytest.mark.parametrize(
-    ("value", "digits", "text"),
-    [
-        *(("0", 5, "0.0"), ("1", 5, "1.0"), ("-1/2", 5, "-0.5"), ("5/2", 1, "2.0")),
-        *(("7/2", 1, "4.0"), ("999999", 3, "1000000.0"), ("1e16", 3, "1.0e+16")),
-        *(("1e15", 3, "1000000000000000.0"), ("0.00001234", 2, "1.2e-5")),
-        *(("0.0001234", 2, "0.00012"), ("-1e-400", 2, "-1.0e-400")),
-    ],
-)
-def test_digits_of_some_numbers(value: str, digits: int, text: str) -> None:
-    assert text_of(Fraction(value), digits) == text
-
-
 def test_ends_are_decimals_outside_the_ball() -> None:
     for digits in (8, 40, 6000):
         ball = at_precision(digits, lambda: exact(Fraction(-(10**50), 7)))

@@ -12,7 +12,6 @@ from conftest import Lagtop
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.files import text_tables
-from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.files.tops import read_tops
 from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.reading import read_recording
@@ -237,19 +236,3 @@ def test_unix_times_keep_their_digits(tmp_path: Path) -> None:
         (tmp_path / "file").write_text(f"{heading},theta\n{rows}")
         found = read_recording(str(tmp_path / "file"), Reading()).given["t"][:, 0]
         assert found.tolist() == pytest.approx([0, 0.001000001, 0.002000002], rel=1e-14), zeros
-
-
-@pytest.mark.parametrize(
-    ("heading", "found"),
-    [
-        ("φ'0 [rad/s]", ("phidot0", "rad/s")),
-        ("ψ\u0307", ("psidot", "")),
-        ("ϑ₀ (degrees)", ("theta0", "deg")),
-        ("g m/s^2", ("g", "m/s^2")),
-        ("omega[0]", ("omega[0]", "")),
-        ("R(1, 2)", ("R(1, 2)", "")),
-        ("angle of s", ("angle of", "s")),
-    ],
-)
-def test_names_and_units_in_headings(heading: str, found: tuple[str, str]) -> None:
-    assert name_and_unit(heading) == found

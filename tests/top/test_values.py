@@ -27,52 +27,8 @@ from lagrange_cli.top.values import (
     parse_range,
     parse_value,
     parse_values,
-    split_unit,
     value_of,
 )
-
-
-@pytest.mark.parametrize(
-    ("text", "number", "unit"),
-    [
-        (" -1.5e-3 ", "-1.5e-3", ""),
-        ("2e3eV", "2e3", "eV"),
-        ("2e g", "2", "e g"),
-        ("50/s", "50", "/s"),
-        ("-30°/s", "-30", "°/s"),
-        ("1587(2)e-3kg", "1587(2)e-3", "kg"),
-        ("1587 ± 0.1 % g", "1587 ± 0.1 %", "g"),
-        ("(1.587 +/- 0.002)e3 g", "(1.587 +/- 0.002)e3", "g"),
-        ("log:1:1e4:50 rpm", "log:1:1e4:50", "rpm"),
-        ("1kg,2kg", "1kg,2kg", ""),
-        ("log:1:2: x", "log:1:2: x", ""),
-        ("nan", "nan", ""),
-        ("5O", "5", "O"),
-    ],
-)
-def test_the_unit_begins_at_the_first_letter(text: str, number: str, unit: str) -> None:
-    assert split_unit(text) == (number, unit)
-
-
-@pytest.mark.parametrize(
-    ("text", "number", "std"),
-    [
-        ("73.9(12)", "73.9", "1.2"),
-        ("73.9(1.2)", "73.9", "1.2"),
-        ("-0.4293(48)", "-0.4293", "0.0048"),
-        ("1.587(2)e3", "1587", "2"),
-        ("1587±2", "1587", "2"),
-        ("1587 +- 2", "1587", "2"),
-        (" 1587 +/- 0.1 % ", "1587", "1.587"),
-        ("(-1.5+/-0.1)e3", "-1500", "100"),
-    ],
-)
-def test_uncertain_numbers_are_exact(text: str, number: str, std: str) -> None:
-    assert parse_value("m", text, uncertain=True) == Value(Fraction(number), "", Fraction(std))
-    points = parse_value("m", text, parse_values, uncertain=True)
-    assert (points.number.exact, points.std) == ([Fraction(number)], Fraction(std))
-    with pytest.raises(LagtopError, match="must have no uncertainty in this command, got "):
-        parse_value("m", text)
 
 
 def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
