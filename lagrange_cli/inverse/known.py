@@ -22,7 +22,6 @@ from ..top.inputs import (
     INPUTS,
     STEADY_WORDS,
     TILT,
-    all_replaced,
     checked_double,
     replaced_by,
 )
@@ -37,9 +36,6 @@ The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
 WEIGHT = {"m", "g", "s"}
 CONTRADICTS = 3.0
 """Standard deviations from which a known input contradicts the recording."""
-_MOST_TURNS, _APART = 10, 6.0
-"""A known C selects among spins that differ by whole turns per row: the most turns, and the least
-distance of these spins in standard deviations."""
 _UNITS = (6.0, 2 * math.pi, 30 / math.pi, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7)
 _ROUGHLY = 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
@@ -124,36 +120,6 @@ def body_numbers(torque: Array, b: Array, has: Mapping[str, Array]) -> dict[str,
     return dict(sorted(found.items()))
 
 
-def estimates(
-    known: Known, v: Mapping[str, Array], turn: float, *, spins: bool
-) -> dict[str, Array]:
-    """Return estimates of known inputs from the motion and the other known inputs.
-
-    `v` has the quantities of a motion that was fitted without them, `turn` is 2 pi per frame if
-    whole turns are invisible, else 0, and `spins` is true if the spin is recorded.
-    """
-    found = {x: v[x] for x in ("theta0", "thetadot0", "psidot0") if x in known}
-    for name in (x for x in known if replaced_by(x) == "r0" and spins):
-        start = {x: v[x] for x in ("theta0", "psidot0")}
-        wanted = in_all_forms(start | {name: v["r0"] * 0 + known[name][0]})["r0"]
-        found[name] = in_all_forms(start | {"r0": _nearest(v["r0"], float(wanted[0]), turn)})[name]
-    moment = v.get("A")
-    if WEIGHT <= known.keys():
-        implied = v["m"] * v["g"] * v["s"] / (v["a"] / 2)
-        whole = in_all_forms({"m": v["m"], "s": v["s"], "A": implied})
-        found |= {x: whole[x] for x in known if replaced_by(x) == "A"}
-        moment = implied if moment is None else moment
-    if "C" in known and moment is not None and (spins or "r0" in all_replaced(known)):
-        r0 = v["r0"]  # with the uncertainty of a known one, if the spin is not recorded
-        if "r0" in known and spins:
-            r0 = _nearest(r0, known["r0"][0], turn)
-        elif spins:
-            wanted = float((v["b"] * moment)[0]) / known["C"][0]
-            r0 = _nearest(r0, wanted, turn) if abs(wanted) <= _MOST_TURNS * turn else r0
-        found["C"] = v["b"] * moment / r0
-    return found
-
-
 def compared(
     name: str,
     given: tuple[float, float],
@@ -217,20 +183,6 @@ def _plain(x: float) -> str:
     return f"{x:.3g}" if not 1000 <= x < 1e6 else f"{x:.0f}"
 
 
-def selects_any(turns: float, spread: float) -> bool:
-    """Return whether several spins that differ by whole turns per row meet a known C.
-
-    `turns` are those per row of the spin that C implies, and `spread` is their relative standard
-    deviation.  A C that implies more than _MOST_TURNS is wrong.
-    """
-    return 0.5 < turns <= _MOST_TURNS and turns * spread * _APART > 1
-
-
 def whole_turns(rate: float, wanted: float, turn: float) -> float:
     """Return the whole turns per row that bring a rate next to a wanted one."""
     return turn * round((wanted - rate) / turn) if turn else 0.0
-
-
-def _nearest(rate: Array, given: float, turn: float) -> Array:
-    """Return rates that are shifted together by whole turns to be nearest to a given one."""
-    return rate + whole_turns(float(rate[0]), given, turn)

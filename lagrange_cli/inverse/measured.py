@@ -65,10 +65,6 @@ class Measured:
     """The marker in space, shape (n, 3), if the axis is known from its position."""
     is_mirrored: bool = False
     """Whether psi was counted in the other direction."""
-    spread: Array | None = None
-    """Standard deviations of the times of the rows of which each row is the mean."""
-    rows_per_bin: int = 1
-    """The number of rows of which each row is the mean."""
 
     @property
     def time_unit(self) -> str:
@@ -152,11 +148,9 @@ class Measured:
 
     def rows(self, rows: Any) -> Measured:
         """Return some rows, in this order, with the same zero of time."""
-        found: dict[str, Any] = {
-            key: None if (x := getattr(self, key)) is None else x[rows]
-            for key in ("position", "spread")
-        }
-        return replace(self, t=self.t[rows], angles=rows_of(self.angles, rows), **found)
+        position = None if self.position is None else self.position[rows]
+        angles = rows_of(self.angles, rows)
+        return replace(self, t=self.t[rows], angles=angles, position=position)
 
     def part(self, rows: Any, name: str = "") -> Measured:
         """Return some rows, in this order, with times since the first of them."""

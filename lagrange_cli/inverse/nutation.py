@@ -14,11 +14,10 @@ from ..solver.keys import shown_keys
 from ..sweeps.records import sweep
 from ..top.inputs import all_replaced
 from ..top.units import Units
-from .checks import Noise
-from .known import body_numbers, time_power
+from .conditions import Comparison, Vector
+from .known import Known, body_numbers, in_all_forms, time_power
 from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
-from .problem import BESIDE_POLE, Minimum, Problem
 from .reasons import Kind, Reason
 
 _MEANINGS = {
@@ -45,30 +44,32 @@ _UNSURE, _OPEN = 0.1, 0.25
 first row is not determined, and beyond which the sign of the nutation rate is not."""
 _IMPROVED = 0.999
 """Standard deviation of a known input after the fit, over the given one, from which it is new."""
+_KNOWN = 1e-4
+"""Standard deviation of a number over that without known inputs, below which they determine it."""
 
 
 def nutating_outcome(
-    found: Minimum,
+    found: Comparison,
     recording: Measured,
     scale: float,
-    noise: Mapping[str, Noise],
     *,
     is_spin_known: bool,
     is_even: bool,
     rival: str = "",
+    assumed: Sequence[str] = (),
     **others: Any,
 ) -> Outcome:
     """Return the result of a fit whose unit of time is `scale` units of the recording.
 
-    Without `is_spin_known` nothing follows from r0.  The `noise` of the channels, and all others,
-    are those of `Outcome`, with the `notes` that come after those on the top.  A `rival` is another
-    top, in words.
+    Without `is_spin_known` nothing follows from r0.  What is `assumed` of the spin comes first in
+    the notes.  A `rival` is another top, in words.  All others are those of `Outcome`.
     """
-    problem, names, given = found.problem, found.problem.names, found.problem.stds
-    stds = np.linalg.norm(found.spread, axis=1)
-    pairs = found.numbers(lambda x: _computed(problem, x, is_spin_known=is_spin_known))
-    hidden = {x for x, y in zip(names, stds, strict=True) if y > _IMPROVED * given.get(x, math.inf)}
-    tilt = found.values["theta0"]
+    vector, best = found.vector, found.vector.best
+    names, motion = best.problem.names, best.problem.angles
+    pairs = vector.numbers(lambda at: _computed(vector, at, is_spin_known=is_spin_known))
+    hidden = {x for x, (_, std, _) in pairs.items() if std <= _KNOWN * found.free.get(x, 0.0)}
+    hidden |= {x for x, (_, y) in vector.known.items() if pairs.get(x, (0, 0))[1] >= _IMPROVED * y}
+    tilt = best.values["theta0"]
     nearness = pairs.get("theta0", (0.0, 0.0))[1] / min(tilt, math.pi - tilt)
     hidden |= {"psidot0", "psi_zero", "phi_zero"} if nearness > _UNSURE else set()
     hidden |= {"thetadot0"} if nearness > _OPEN else set()
@@ -79,31 +80,35 @@ def nutating_outcome(
         size = 1.0 if name in _ANGLES else scale ** time_power(name)
         std, own = (x * size for x in spreads)
         key = f"{name}_rad" if name in _ANGLES else name
-        meaning = _meaning(name, problem, pairs)
+        meaning = _meaning(name, vector.known, pairs)
         turns = (math.pi - value) // (2 * math.pi) if name.endswith("_zero") else 0  # within a half
         numbers[key] = Number((value + 2 * math.pi * turns) * size, std, meaning, own)
-    unit = found.spread / (stds[:, np.newaxis] + 1e-300)
-    body = [(i, x) for i, x in enumerate(names) if x in {"a", "b", "r0"} and x in numbers]
+    body = {
+        x: vector.spread[names.index(x)]
+        for x in ("a", "b", "r0")
+        if {x} <= numbers.keys() & {*names}
+    }
+    unit = {x: y / np.linalg.norm(y) for x, y in body.items()}
     products = [x for x in numbers if set(x) & set("*/") and is_spin_known]
-    notes = [*others.pop("assumed", ()), *[_wish(products)] * bool(products)]
-    if problem.is_even:
+    notes = [*assumed, *[_wish(products)] * bool(products)]
+    if recording.angles.keys() == {"theta"} and vector.known.get("psidot0") == (0, 0):
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     values = {x: y[0] for x, y in pairs.items()}
-    inputs, arbitrary = _inputs(found, values, is_spin_known=is_spin_known)
-    arbitrary |= hidden & {"thetadot0", "psidot0"} - problem.inputs.keys()
+    inputs, arbitrary = _inputs(vector, values, is_spin_known=is_spin_known)
+    arbitrary |= hidden & {"thetadot0", "psidot0"} - vector.known.keys()
     return Outcome(
         recording=recording,
         in_radians=numbers,
-        motion=lambda t: problem.angles(found.x[np.newaxis], t / scale)[:, 0],
-        parameters=problem.count,
+        motion=lambda t: motion(best.x[np.newaxis, np.newaxis], t / scale)[:, 0, 0],
+        parameters=best.x.size - vector.conditions,
         frequency=1 / scale,
-        noise=noise,
-        reasons=[*_faults(found, rival, is_even=is_even), *others.pop("reasons", ())],
-        notes=[*notes, *others.pop("notes", ())],
+        reasons=_faults(found, rival, is_even=is_even),
+        notes=[*notes, *found.notes],
         inputs={x: y * scale ** time_power(x) for x, y in inputs.items()},
         arbitrary=arbitrary,
+        distances=found.distances,
         correlations={
-            f"{x} and {y}": float(unit[i] @ unit[j]) for i, x in body for j, y in body if x < y
+            f"{x} and {y}": float(unit[x] @ unit[y]) for x in unit for y in unit if x < y
         },
         **others,
     )
@@ -116,60 +121,59 @@ def _wish(products: Sequence[str]) -> str:
     return f"only {' and '.join(products)} can be determined, unless {some} given"
 
 
-def _faults(found: Minimum, rival: str, *, is_even: bool) -> list[Reason]:
-    """Return why the top is undetermined or impossible."""
-    problem, values, faults = found.problem, found.values, list[Reason]()
+def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:
+    """Return why the top is undetermined or impossible, or contradicts known inputs."""
+    best, faults = found.vector.best, [Reason(Kind.KNOWN, x) for x in found.contradictions]
+    values = best.values
     if rival:
         also = f"another top explains the recording as well: {rival}"
         faults.append(Reason(Kind.OPEN, also))
-    if found.unknown:
-        known = [x for x in found.unknown if not x.endswith("_zero")] or found.unknown
+    if best.unknown:
+        known = [x for x in best.unknown if not x.endswith("_zero")] or best.unknown
         missing = f"the recording does not determine {' and '.join(known)}"
         faults.append(Reason(Kind.OPEN, missing))
-    elif found.is_curved:
+    elif best.is_curved:
         hardly = (
             "the recording hardly determines the top: chi^2 is not parabolic within two standard "
             "deviations"
         )
         faults.append(Reason(Kind.OPEN, hardly))
-    if problem.spins and not found.unknown:
-        ratio = values["b"] / (values["r0"] or math.inf)
-        std = found.std("b") / abs(values["r0"] or math.inf)
-        is_free = "phi" in problem.recording.angles and is_even
+    spins = best.problem.spins
+    r0 = values["r0"] if spins else found.vector.spin_rate
+    if r0 and not best.unknown:
+        ratio, std = values["b"] / r0, best.std("b") / abs(r0)
+        is_free = spins and is_even
         if not -3 * std < ratio < 2 + 3 * std and not (is_free and abs(ratio) < 3 * std):
             wrong = f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2"
             faults.append(Reason(Kind.IMPOSSIBLE, wrong))
     return faults
 
 
-def _computed(problem: Problem, x: Array, *, is_spin_known: bool) -> dict[str, Array]:
-    """Return the numbers of the motion and of the body for many parameters, start in radians."""
-    v = problem.values(x)
-    free = {*problem.names, *["b"] * problem.is_tied, *["a"] * problem.has_torque}
-    free |= {*BESIDE_POLE.values()} if problem.pole else set()
-    implied = all_replaced(problem.known) - problem.known.keys()
-    free |= {"r0"} & implied
-    free -= {"a"} if problem.has_torque and not problem.stds else set()
-    names = [name for name in (*_MEANINGS, *problem.stds) if name in free]
-    found = {name: v[name] for name in names}
-    has = {name: v[name] for name in problem.known}
-    has |= {"r0": v["r0"]} if problem.spins and is_spin_known else {}
-    has |= {name: v[name] for name in implied}
-    found |= body_numbers(v["a"] / 2, v["b"], has)
+def _computed(vector: Vector, at: Array, *, is_spin_known: bool) -> dict[str, Array]:
+    """Return the numbers of the motion and of the body for many vectors, start in radians."""
+    v, has, problem = vector.motion(at), vector.inputs(at), vector.best.problem
+    spins, seen = problem.spins, problem.recording.angles
+    names = [x for x in _MEANINGS if x != "r0" or spins]
+    found = {x: v[x] for x in names if x not in {"phi_zero", "psi_zero"} or x[:3] in seen}
+    found |= {x: has[x] for x in vector.uncertain}
+    whole = in_all_forms(has)
+    body = {**has} | ({"A": whole["A"]} if whole.has("A") else {})
+    has_spin = (spins or "r0" in all_replaced(has)) and is_spin_known
+    found |= body_numbers(v["a"] / 2, v["b"], body | ({"r0": v["r0"]} if has_spin else {}))
     start: dict[str, Any] = {"theta0_rad": v["theta0"]}
     start |= {x: v[x] for x in ("thetadot0", "psidot0")}
     swept = sweep(keys=_DERIVED, radians=True, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
     derived = {key: np.asarray(swept[key], float) for key in _DERIVED}
     derived["mean_spin_rate"] = derived["mean_spin_rate"] + v["r0"] - v["b"]
-    if not problem.spins:
+    if not has_spin and not spins:
         del derived["mean_spin_rate"]
     for key, exact in _ELEMENTARY.items():
         derived[f"{key}{PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
     return found | derived
 
 
-def _meaning(name: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]]) -> str:
-    if name in problem.stds:
+def _meaning(name: str, known: Known, pairs: Mapping[str, tuple[float, ...]]) -> str:
+    if name in known:
         return "known, improved by the fit"
     if off := pairs.get(f"{name}{PERCENT}"):
         side, sigmas = ("below", "above")[off[0] > 0], abs(off[0]) / (off[1] or math.inf)
@@ -182,26 +186,31 @@ def _meaning(name: str, problem: Problem, pairs: Mapping[str, tuple[float, ...]]
 
 
 def _inputs(
-    found: Minimum, numbers: Mapping[str, float], *, is_spin_known: bool
+    vector: Vector, numbers: Mapping[str, float], *, is_spin_known: bool
 ) -> tuple[dict[str, float], set[str]]:
     """Return inputs of `Top` with this motion, and which of the body's are arbitrary.
 
     Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.
     """
-    values, body = found.values, ("m", "s", "g", "A", "C", "r0")
-    has = {x: values[x] for x in body if x in found.problem.known or (x == "A" and x in values)}
+    v = {name: float(x[0]) for name, x in vector.motion(vector.z[np.newaxis]).items()}
+    given = {name: float(x[0]) for name, x in vector.inputs(vector.z[np.newaxis]).items()}
+    body, whole = ("m", "s", "g", "A", "C", "r0"), in_all_forms(given)
+    has: dict[str, float] = {x: given[x] for x in body if x in given}
+    has |= {"A": whole["A"]} if whole.has("A") else {}
     has |= {x: numbers[x] for x in body if x in numbers and (x != "r0" or is_spin_known)}
+    is_spin_seen = vector.best.problem.spins or "r0" in all_replaced(given)
+    has |= {"r0": v["r0"]} if is_spin_seen and is_spin_known else {}
     arbitrary = {*body} - has.keys()
     moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
-    ratio = values["b"] / values["r0"] if found.problem.spins and is_spin_known else 1.0
-    has["r0"] = values["b"] * moment / has.setdefault("C", ratio * moment)
-    weight = values["a"] / 2 * moment  # mgs
+    ratio = v["b"] / v["r0"] if "r0" in has else 1.0
+    has["r0"] = v["b"] * moment / has.setdefault("C", ratio * moment)
+    weight = v["a"] / 2 * moment  # mgs
     share = min(0.1, max(1 - has["C"] / (2 * moment), 1e-3) / 2)
     unknown = [x for x in ("g", "s", "m") if x not in has]
     for name in unknown[:-1]:
         has[name] = 1.0 if name == "g" else share * moment * has["g"] / weight
     for name in unknown[-1:]:
         has[name] = weight / math.prod(has[x] for x in ("m", "g", "s") if x != name)
-    start = {"theta0_deg": math.degrees(values["theta0"])}
-    start |= {x: values[x] for x in ("thetadot0", "psidot0")}
+    start = {"theta0_deg": math.degrees(v["theta0"])}
+    start |= {x: v[x] for x in ("thetadot0", "psidot0")}
     return {x: has[x] for x in body} | start, arbitrary

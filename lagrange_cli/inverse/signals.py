@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -29,12 +28,12 @@ Noise exceeds it at the best of all frequencies about once in 370 times.
 """
 _TIED = 0.3
 """Loss of the log of the noise, per angle, up to which a higher frequency is preferred."""
+_ROWS_OF_NOISE = 4000
+"""Means of rows from which the noise beside harmonics is estimated."""
 NEAR_POLE = 0.1
 """Distance from a pole, in radians, below which the axis may pass over it or begin on it."""
 _WITHOUT_LARGEST = 0.623
 """Mean square of normal numbers without the largest tenth."""
-_JUMP = 0.5
-"""Change of an angle within a bin, in radians, beyond which the mean of the bin is not used."""
 
 
 class Signal(NamedTuple):
@@ -111,37 +110,6 @@ def mean_rate(t: Array, y: Array, frame: float) -> float:
     return float(rates[np.argmax(spectrum)])
 
 
-def binned(recording: Measured, signals: Mapping[str, Signal], most: int) -> Measured:
-    """Return the recording averaged over at most about `most` bins of equally many rows.
-
-    A bin with a missing cell is missing.  If most are, the recording is thinned instead.  Angles
-    have no whole turns removed.
-    """
-    size = -(-recording.t.size // most)
-    if size == 1:
-        return recording
-    starts = np.arange(0, recording.t.size - size + 1, size)
-
-    def mean(x: Array) -> Array:
-        return np.asarray(x[: starts.size * size].reshape(-1, size).mean(axis=1))
-
-    t, angles = mean(recording.t), {}
-    for name, values in recording.angles.items():
-        one = signals.get(name)
-        y = values.copy()
-        if name != "theta" and one is not None:
-            y[np.isfinite(values)] = one.y
-        blocks = y[: starts.size * size].reshape(-1, size)
-        ends = blocks[:, : max(size // 4, 1)].mean(axis=1) - blocks[:, -(size // 4 or 1) :].mean(1)
-        rate = 0.0 if name == "theta" or one is None else one.rate
-        angles[name] = np.where(np.abs(ends) > _JUMP, np.nan, blocks.mean(axis=1)) + rate * t
-    spread = np.sqrt(np.maximum(mean(recording.t**2) - t**2, 0))
-    whole = replace(recording, t=t, angles=angles, spread=spread, rows_per_bin=size, position=None)
-    if whole.present.mean() < recording.present.mean() / 2:
-        return recording.rows(np.arange(0, recording.t.size, size))
-    return whole
-
-
 def oscillation_in(signals: Mapping[str, Signal]) -> tuple[float, bool]:
     """Return the frequency of the nutation, up to half a period per row, and if it is visible.
 
@@ -208,7 +176,11 @@ def noise_of(
     signals: Mapping[str, Signal], frequency: float, recording: Measured
 ) -> dict[str, float]:
     """Return the noise of each channel in radians, as harmonics of the nutation leave it."""
-    found = {name: x.averaged(4000).finest(frequency)[1] for name, x in signals.items()}
+    found = {}
+    for name, signal in signals.items():
+        few = signal.averaged(_ROWS_OF_NOISE)
+        in_each = int(np.isfinite(recording.angles[name]).sum()) / few.t.size
+        found[name] = few.finest(frequency)[1] * math.sqrt(in_each)
     if "theta" in found:
         sine = np.sin(recording.angles["theta"])
         found["theta"] /= max(math.sqrt(float(np.nanmean(sine * sine))), 1e-3)

@@ -1,7 +1,8 @@
 """Starts of a fit: tops in closed form that nutate as a recording does.
 
 The period and the turning points are those of the recorded tilt.  If the tilt is not recorded,
-turning points are tried on a grid.  Both, with the mean precession rate, give tops.
+turning points are tried on a grid.  Both, with the mean precession rate, give tops.  Those that
+leave the least noise in some rows of the recording are the starts.
 """
 
 from __future__ import annotations
@@ -12,19 +13,29 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arithmetic.types import Array
-from .motions import nutating
+from .measured import Measured
+from .motions import angles, nutating, states_of
 from .signals import NEAR_POLE, Signal, passes_pole
 
 _HEIGHTS = np.concatenate([[1e-6], 10.0 ** np.linspace(-4, 8, 73)])
 """Values of (u3 - 1)/(1 - u2) between which a mean precession rate is searched for."""
 _NEAR_POLE = np.array([0.01, 0.03, 0.06, 0.1, 0.17, 0.27, 0.4])
 _TILTS = np.concatenate([_NEAR_POLE, np.linspace(0.55, np.pi - 0.55, 15), np.pi - _NEAR_POLE[::-1]])
+"""If the tilt is not recorded: turning points to try."""
 _SWINGS = (0.01, 0.04, 0.15)
+"""The same: small nutations, over their distance from a pole."""
 _PHASES = np.sin(np.linspace(0, np.pi / 2, 9)) ** 2
-"""If the tilt is not recorded: turning points to try, small nutations over their distance from a
-pole, and places of the start between the turning points."""
+"""The same: places of the start between the turning points."""
 _POLE = 1e-4
 """Least distance of a start from a pole, in radians."""
+_ROWS = (12, 50)
+"""Rows at which all starts are compared, then the best."""
+_KEPT = 1500
+"""Starts that are compared at more rows."""
+_BLOCK = 2000
+"""Starts that are compared at once."""
+ALIKE = 0.02
+"""Difference of a and b, over 1 + their size in units of the period, of starts that are alike."""
 
 
 def starts(signals: Mapping[str, Signal], tilt: float | None) -> Array:
@@ -105,3 +116,68 @@ def _grid() -> tuple[Array, Array]:
     room = np.minimum(_TILTS, math.pi - _TILTS)
     least = np.concatenate([_TILTS[one], *(_TILTS - swing * room for swing in _SWINGS)])
     return least, np.concatenate([_TILTS[other], *[_TILTS] * len(_SWINGS)])
+
+
+def best_starts(
+    recording: Measured,
+    signals: Mapping[str, Signal],
+    sizes: Array,
+    known: Mapping[str, float],
+    most: int,
+) -> tuple[Array, Array]:
+    """Return the best states that differ in a or b, and psi, phi and r0 of each in the first row.
+
+    They leave the least logarithm of the noise, summed over the channels.  A known start and the
+    sign of a known r0 restrict them.
+    """
+    states = starts(signals, known.get("theta0"))
+    sign = known.get("r0", float(not known.get("psidot0", 1.0)))  # released, b and -b look alike
+    states = states[states[:, 1] * sign >= 0]
+    for rows in _ROWS if len(states) > _KEPT else _ROWS[1:]:
+        few = recording.thinned(rows)
+        blocks = np.array_split(states, len(states) // _BLOCK + 1)
+        found = [_scored(few, x, signals.get("phi"), sizes) for x in blocks]
+        noise, zeros = (np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
+        order = np.argsort(noise)[:_KEPT]
+        states, zeros = states[order], zeros[:, order]
+    kept: list[int] = []
+    for i in np.flatnonzero(np.isfinite(noise[order])):
+        near = np.abs(states[kept, :2] - states[i, :2]) < ALIKE * (1 + np.abs(states[i, :2]))
+        if not near.all(axis=1).any():
+            kept.append(int(i))
+        if len(kept) == most:
+            break
+    return states[kept], zeros[:, kept]
+
+
+def _scored(
+    recording: Measured, states: Array, spin: Signal | None, sizes: Array
+) -> tuple[Array, Array]:
+    """Return the logarithm of the noise that states leave, and their best psi, phi and r0."""
+    theta, phi, psi = angles(states_of(*states.T), recording.t)
+    turned = zero = rate = np.zeros(len(states))
+    if spin is not None:
+        rate = _spin_rates(recording, phi, spin)
+        phi = phi + np.outer(rate, recording.t)
+        zero = _mean_angle(recording.angles["phi"] - phi)
+    if "psi" in recording.angles:
+        turned = _mean_angle(recording.angles["psi"] - psi, np.sin(theta))
+    rest = recording.residuals(theta, phi + zero[:, np.newaxis], psi + turned[:, np.newaxis])
+    seen = np.maximum(np.isfinite(rest).sum(axis=-1), 1)
+    noise = np.log(np.nansum(rest**2, axis=-1) / seen + sizes**2).sum(axis=-1)
+    return np.nan_to_num(noise, nan=np.inf), np.stack([turned, zero, rate + states[:, 1]])
+
+
+def _spin_rates(recording: Measured, phi: Array, spin: Signal) -> Array:
+    """Return the rates to add to phi; next to a pole the axis passes it on either side."""
+    t, seen = recording.t, recording.angles["phi"]
+    around = t - t.mean()
+    shown = np.interp(t, spin.t, spin.y) + spin.rate * t
+    rates = (shown - phi) @ around / (around @ around) + 2 * math.pi * np.array([[0.0], [1], [-1]])
+    waves = (np.exp(1j * (seen - phi - np.outer(x, t))) for x in rates)
+    fits = [np.abs(np.nansum(x, axis=1)) * (1.05 if not i else 1.0) for i, x in enumerate(waves)]
+    return np.asarray(rates[np.argmax(fits, axis=0), np.arange(len(phi))])
+
+
+def _mean_angle(turned: Array, weights: Array | float = 1.0) -> Array:
+    return np.asarray(np.angle(np.nansum(weights * np.exp(1j * turned), axis=1)))

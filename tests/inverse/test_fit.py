@@ -22,11 +22,9 @@ from noisy_recordings import (
 )
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.inverse.known import known_inputs
 from lagrange_cli.inverse.motions import angles, nutating, states_of
-from lagrange_cli.inverse.problem import Problem
+from lagrange_cli.inverse.problem import problem_of
 from lagrange_cli.recordings.doubts import pivot_of
-from lagrange_cli.top.given import gather
 
 
 @pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
@@ -82,10 +80,10 @@ def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
     small = np.random.default_rng(24).normal(scale=1e-4, size=(20, 3))
     moved = (turns * Rotation.from_rotvec(small)).as_quat(scalar_first=True)
     recording = recording_from(t, quaternion=moved)
-    problem = Problem(recording, known_inputs(gather({})), np.ones(3))
-    start = TRUTH | {"theta0": 75 * DEGREE}
-    x = np.array([[start.get(name, 0.0) for name in problem.names]])
-    theta, across, along = problem.residuals(x)[0]
+    state = np.array([[TRUTH["a"], TRUTH["b"], 75 * DEGREE, 0.0, 0.0]])
+    zeros = np.array([[0.0], [0.0], [TRUTH["r0"]]])
+    problem, x = problem_of(recording, np.ones(3), state, zeros, None)
+    theta, across, along = problem.residuals(x[:, np.newaxis])[0, 0]
     assert along == pytest.approx(small[:, 2], abs=1e-7)
     assert np.hypot(theta, across) == pytest.approx(np.hypot(small[:, 0], small[:, 1]), abs=1e-7)
 

@@ -1,4 +1,4 @@
-"""Parts of a fit, each against numbers that are known before: starts, bins, noise, means, decay."""
+"""Parts of a fit, each against numbers that are known before: starts, noise, means, decay."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from lagrange_cli.inverse.decay import decay_of
 from lagrange_cli.inverse.known import compared
 from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.signals import (
-    binned,
     mean_rate,
     neighbour_noise,
     oscillation_in,
@@ -70,21 +69,6 @@ def test_a_contradiction_by_a_unit_says_so(factor: float) -> None:
     assert compared("r0", (3.4, 0.03), (3.0, 0.04), {})[2].endswith(
         "8 sigma apart: omit r0, or check the unit of t"
     )
-
-
-def test_bins_are_means() -> None:
-    t = np.arange(42.0) / 4
-    theta = 1 + 0.1 * np.sin(np.arange(42))
-    psi = np.where(t < 5, 0, 1.5) + 2.0 * t
-    recording = recording_from(t, theta=theta, psi=np.angle(np.exp(1j * psi)))
-    bins = binned(recording, signals_in(recording), 14)
-    assert (bins.rows_per_bin, bins.t.size) == (3, 14)
-    assert bins.t == pytest.approx(t.reshape(14, 3).mean(axis=1))
-    assert bins.spread == pytest.approx(t.reshape(14, 3).std(axis=1))
-    assert bins.angles["theta"] == pytest.approx(theta.reshape(14, 3).mean(axis=1))
-    off = bins.angles["psi"] - psi.reshape(14, 3).mean(axis=1)
-    assert np.isnan(off).tolist() == [i == 6 for i in range(14)]  # the jump is in its rows
-    assert np.diff(off[np.isfinite(off)]) == pytest.approx(0, abs=1e-9)
 
 
 def test_noise_steps_and_mean_rates_of_signals() -> None:

@@ -1,0 +1,246 @@
+"""Known inputs of a fit: conditions on a motion, which are compared with it and then obeyed.
+
+The parameters of a motion that was fitted without known inputs, and the uncertain ones among these,
+are one vector with one covariance.  What the recording and the other inputs give for a known input
+is compared with it.  If all agree, the motion is fitted again so that it meets them, and the
+covariance shrinks to the directions in which it goes on to do so, as in a Kalman filter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import Message, arg
+from ..top.inputs import replaced_by
+from .known import WEIGHT, Known, compared, in_all_forms, scaled_known, time_power, whole_turns
+from .minimum import Minimum, tied
+from .problem import Ties
+
+_EXACT = 1e-5
+"""Standard deviation of an exact input, in units of the period, if the recording alone does not
+determine it."""
+_HELD = 0.01
+"""Its standard deviation over that of what the recording gives for it."""
+_MOST_TURNS = 10
+"""Turns per row of the spin up to which a known C selects it among those that look alike."""
+_SELECTS = 6.0
+"""Standard deviations of the spin that C implies, in a turn per row, from which C selects it."""
+_VAGUE = 0.5
+"""Relative standard deviation of what the recording gives for an input of the body from which the
+recording does not determine it."""
+_START = ("theta0", "thetadot0", "psidot0")
+Values = Mapping[str, Any]
+
+
+def estimates(has: Values, v: Values, *, spins: bool) -> dict[str, Array]:
+    """Return what a motion and the other known inputs give for known inputs.
+
+    `has` are the known inputs, and `spins` is true if the spin is recorded.
+    """
+    found = {x: v[x] for x in _START if x in has}
+    spin = [x for x in has if replaced_by(x) == "r0"]
+    start, r0 = {"theta0": v["theta0"], "psidot0": v["psidot0"]}, v["r0"]
+    if spins:
+        found |= {x: in_all_forms(start | {"r0": r0})[x] for x in spin}
+    elif spin:
+        r0 = in_all_forms({**has, **start})["r0"]
+    whole = in_all_forms(has)
+    moment = whole["A"] if whole.has("A") else None
+    if has.keys() >= WEIGHT:
+        implied = 2 * has["m"] * has["g"] * has["s"] / v["a"]
+        forms = in_all_forms({"m": has["m"], "s": has["s"], "A": implied})
+        found |= {x: forms[x] for x in has if replaced_by(x) == "A"}
+        moment = implied if moment is None else moment
+    if "C" in has and moment is not None and (spins or spin):
+        found["C"] = v["b"] * moment / r0
+    return found
+
+
+def ties_of(known: Known, least: Mapping[str, float] | None, *, spins: bool) -> Ties:
+    """Return the distances of a motion from known inputs, in standard deviations.
+
+    Only those in `least` count if this is given: the standard deviations of exact ones.
+    """
+    has = {x: np.array(y) for x, (y, _) in known.items() if x != "steady"}
+
+    def off(v: Values, has: Values) -> dict[str, Array]:
+        found = estimates(has, v, spins=spins)
+        return {x: y - has[x] for x, y in found.items() if least is None or x in least}
+
+    def distances(v: dict[str, Array]) -> Array:
+        found = off(v, has)
+        squares: dict[str, Any] = {x: (least or {}).get(x, _EXACT) ** 2 for x in found}
+        for name, value in has.items():
+            if std := known[name][1]:
+                moved = off(v, {**has, name: value + std})
+                squares = {x: y + (moved[x] - found[x]) ** 2 for x, y in squares.items()}
+        columns = [y / np.sqrt(squares[x]) + 0 * v["a"] for x, y in found.items()]
+        return np.stack(columns, axis=-1) if columns else np.zeros((*v["a"].shape, 0))
+
+    return distances
+
+
+class Vector:
+    """The parameters of a motion and the uncertain known inputs, with one covariance."""
+
+    def __init__(self, best: Minimum, known: Known) -> None:
+        self.best, self.known = best, {x: y for x, y in known.items() if x != "steady"}
+        self.uncertain = [x for x, (_, std) in self.known.items() if std]
+        stds = [self.known[x][1] for x in self.uncertain]
+        self.z = np.concatenate([best.x, [self.known[x][0] for x in self.uncertain]])
+        count, axes = best.spread.shape
+        self.spread = np.zeros((count + len(stds), axes + len(stds)))
+        self.spread[:count, :axes], self.spread[count:, axes:] = best.spread, np.diag(stds)
+        self.conditions = 0
+        """The number of conditions that the motion obeys."""
+
+    def motion(self, at: Array) -> dict[str, Array]:
+        """Return the quantities of motions, shape (tries,); r0 is known if it is not recorded."""
+        problem, has = self.best.problem, self.inputs(at)
+        found = problem.values(at[np.newaxis, :, : self.best.x.size])
+        v = {name: y[0] for name, y in found.items()}
+        if not problem.spins:
+            start = {"theta0": v["theta0"], "psidot0": v["psidot0"]}
+            whole = in_all_forms({**has, **start})
+            v["r0"] = whole["r0"] if whole.has("r0") else v["b"]
+        return v
+
+    def inputs(self, at: Array) -> dict[str, Array]:
+        """Return the known inputs, shape (tries,)."""
+        has = {x: np.full(len(at), y) for x, (y, _) in self.known.items()}
+        return has | {x: at[:, self.best.x.size + i] for i, x in enumerate(self.uncertain)}
+
+    @property
+    def spin_rate(self) -> float:
+        """A known r0, 0 if it is not known."""
+        has = "r0" in {replaced_by(x) for x in self.known}
+        return float(self.motion(self.z[np.newaxis])["r0"][0]) if has else 0.0
+
+    def slopes(self, function: Callable[[Array], Mapping[str, Array]], z: Array) -> Array:
+        """Return the derivatives of functions, by a share of the standard deviations."""
+        steps = np.maximum(1e-2 * np.linalg.norm(self.spread, axis=1), 1e-9 * (np.abs(z) + 1e-3))
+        found = _stacked(function, np.concatenate([z + np.diag(steps), z - np.diag(steps)]))
+        return np.asarray((found[: z.size] - found[z.size :]).T / (2 * steps))
+
+    def numbers(
+        self, function: Callable[[Array], Mapping[str, Array]]
+    ) -> dict[str, tuple[float, float, float]]:
+        """Return finite functions of the vector, with standard deviations.
+
+        The second one is the standard deviation if known inputs are exact.
+        """
+        if not (names := [*function(self.z[np.newaxis])]):
+            return {}
+        rise = self.slopes(function, self.z) @ self.spread
+        inputs, _ = np.linalg.qr(self.spread[self.best.x.size :].T)
+        own = np.linalg.norm(rise - rise @ inputs @ inputs.T, axis=1)
+        values, stds = _stacked(function, self.z[np.newaxis])[0], np.linalg.norm(rise, axis=1)
+        found = zip(names, values.tolist(), stds.tolist(), own.tolist(), strict=True)
+        return {x: (y, z, w) for x, y, z, w in found if np.isfinite([y, z, w]).all()}
+
+    def conditioned(self, function: Callable[[Array], Mapping[str, Array]]) -> None:
+        """Move to the nearest vector at which functions vanish, and keep the spread along it."""
+        at = self.z
+        for _ in range(4):
+            rise = self.slopes(function, at)
+            gain = np.linalg.pinv(rise @ self.spread, rcond=1e-10)
+            off = _stacked(function, at[np.newaxis])[0] - rise @ (at - self.z)
+            at = self.z - self.spread @ gain @ off
+        self.z, self.spread = at, self.spread - self.spread @ gain @ rise @ self.spread
+        self.conditions = len(rise)
+
+
+def _stacked(function: Callable[[Array], Mapping[str, Array]], at: Array) -> Array:
+    return np.stack([y + np.zeros(len(at)) for y in function(at).values()], axis=-1)
+
+
+@dataclass
+class Comparison:
+    """A motion with known inputs, which it obeys unless they contradict it."""
+
+    vector: Vector
+    notes: list[str] = field(default_factory=list)
+    """On known inputs that agree, or are not used."""
+    contradictions: list[str] = field(default_factory=list)
+    distances: dict[str, float] = field(default_factory=dict)
+    """Distances of known inputs from what the recording gives, in standard deviations."""
+    free: dict[str, float] = field(default_factory=dict)
+    """Standard deviations of a, b and the start without known inputs."""
+    is_selected: bool = False
+    """Whether a known C selects the spin."""
+
+
+def known_spin(best: Minimum, known: Known, turn: float) -> tuple[float, bool]:
+    """Return the whole turns per row to add to r0 for known inputs, and if C can be compared.
+
+    Without r0, a C selects one of the spins that look alike if b is known well enough.
+    """
+    if not turn or not best.problem.spins:
+        return 0.0, True
+    v, has = best.values, {x: y for x, (y, _) in known.items()}
+    start = {x: v[x] for x in ("theta0", "psidot0")}
+    whole = in_all_forms(has | start)
+    if whole.has("r0"):
+        return whole_turns(v["r0"], float(whole["r0"]), turn), True
+    own = in_all_forms(has)
+    weight = 2 * math.prod(has.get(x, math.nan) for x in ("m", "g", "s"))
+    moment = own["A"] if own.has("A") else weight / v["a"]
+    if "C" not in has or not math.isfinite(wanted := v["b"] * moment / has["C"]):
+        return 0.0, True
+    parts = [known["C"], known.get("A", (1.0, 0.0)), *((v[x], best.std(x)) for x in ("a", "b"))]
+    spread = math.hypot(*(std / (y or 1e-300) for y, std in parts))
+    turns = abs(wanted) / turn
+    if turns > _MOST_TURNS:
+        return 0.0, True
+    is_selected = turns <= 0.5 or turns * spread * _SELECTS <= 1
+    return whole_turns(v["r0"], wanted, turn) if is_selected else 0.0, is_selected
+
+
+def compare(best: Minimum, known: Known, scale: float, turn: float) -> Comparison:
+    """Return a minimum that was found without known inputs, with all that they say.
+
+    Known inputs are in units of the recording, of which the unit of time of the minimum is `scale`.
+    """
+    inputs, spins = scaled_known(known, scale), best.problem.spins
+    shift, has_moment = known_spin(best, inputs, turn)
+    found = Comparison(Vector(best.turned(shift) if shift else best, inputs))
+    vector, found.is_selected = found.vector, bool(shift)
+    if not has_moment:
+        unused = "known C is not used: it does not show how many turns per row the spin makes"
+        found.notes.append(unused)
+
+    def given(vector: Vector, at: Array) -> dict[str, Array]:
+        shown = estimates(vector.inputs(at), vector.motion(at), spins=spins)
+        return {x: y for x, y in shown.items() if has_moment or x != "C"}
+
+    def off(at: Array) -> dict[str, Array]:
+        has = vector.inputs(at)
+        return {x: y - has[x] for x, y in given(vector, at).items()}
+
+    found.free = {x: y for x, (_, y, _) in vector.numbers(vector.motion).items()}
+    slow = Vector(best, inputs)
+    slowest = given(slow, slow.z[np.newaxis]) if shift else {}
+    for name, (value, std, _) in vector.numbers(lambda at: given(vector, at)).items():
+        if name not in _START and std > _VAGUE * abs(value):
+            continue
+        size = scale ** time_power(name)
+        other = float(slowest[name][0]) * size if shift else None
+        own = value * size, std * size
+        far, agrees, text = compared(name, known[name], own, known, other)
+        found.distances[name] = far
+        (found.notes if agrees else found.contradictions).append(text)
+    if "steady" in known:
+        steady = "known psidot0 = steady contradicts the recording, which nutates: omit "
+        found.contradictions.append(Message(steady + arg("psidot0")))
+    if not found.contradictions and (tests := vector.numbers(off)):
+        least = {x: _HELD * std + 1e-12 for x, (_, std, _) in tests.items()}
+        ties = ties_of(vector.known, least, spins=spins)
+        vector = found.vector = Vector(tied(vector.best, ties), inputs)
+        vector.conditioned(off)
+    return found

@@ -1,0 +1,190 @@
+"""A minimum of the least squares of a fit: its covariance, and how far that can be trusted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from .descent import descended, slopes
+from .problem import Problem, Ties
+
+MOST_ROWS = 1000
+"""Rows of the fit that finds a minimum; its last steps use all rows."""
+_STEPS = 40
+"""Steps of a descent at most."""
+_SHAPE_ROWS = 300
+"""Rows that show the shape of chi^2."""
+_DEPENDENT = 1e-7
+"""Ratio of singular values of the slopes below which a direction is not determined."""
+_SHARE = 0.05
+"""Share of a parameter in such a direction from which it is not determined either."""
+_LEAST = 2.0
+"""Standard deviations by which a > 0."""
+_FASTEST = 1e6
+"""Largest b^2/a at which a is determined."""
+_APART = 4.0
+"""Standard deviations between different tops."""
+_BENT = 2.0
+"""Growth of chi^2 over that of a parabola from which the floor of a bent valley is searched."""
+_BROKEN = 6.0
+"""The same on both sides of a valley without a floor."""
+_STIFF = 100.0
+"""Weight of the distance at which the floor is searched."""
+_ASIDE = 5.0
+"""Standard deviations by which a or b may be off a straight valley."""
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """A minimum of the least squares, in units of the period."""
+
+    problem: Problem
+    x: Array
+    spread: Array
+    """A matrix S with the covariance S S^T of the parameters."""
+    chi2: float
+    unknown: tuple[str, ...] = ()
+    """Parameters that the recording does not determine."""
+    is_curved: bool = False
+    """Whether chi^2 is not parabolic within two standard deviations."""
+    is_hopeless: bool = False
+    """Whether no motion of a top is near the recording."""
+
+    @property
+    def badness(self) -> float:
+        """Minus twice the logarithm of the likelihood."""
+        rows = self.problem.recording.present.sum(axis=1)
+        return self.chi2 + 2 * float(rows @ np.log(self.problem.sizes))
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The quantities of the motion."""
+        found = self.problem.values(self.x[np.newaxis, np.newaxis])
+        return {name: float(y.item()) for name, y in found.items()}
+
+    def std(self, name: str) -> float:
+        """Return the standard deviation of a parameter, 0 if it is none."""
+        names = self.problem.names
+        return float(np.linalg.norm(self.spread[names.index(name)])) if name in names else 0.0
+
+    def differs(self, other: Minimum) -> bool:
+        """Return whether this is another top: in a or b, whose sign changes in a mirror image."""
+        is_image = self.problem.recording.is_mirrored is not other.problem.recording.is_mirrored
+        for name in ("a", "b"):
+            x, y = self.values[name], other.values[name]
+            off = abs(abs(x) - abs(y)) if is_image else abs(x - y)
+            if off > _APART * self.std(name) + 1e-6 * abs(x):
+                return True
+        return False
+
+    def turned(self, turns: float) -> Minimum:
+        """Return the minimum with a spin that is faster by whole turns per row."""
+        x = self.x + turns * np.array([name == "r0" for name in self.problem.names])
+        problem = replace(self.problem, turns=self.problem.turns + turns)
+        return replace(self, problem=problem, x=x)
+
+
+def minimum_at(problem: Problem, x: Array) -> Minimum:
+    """Return the minimum at parameters of one start, with their spread to first order."""
+    few = problem.thinned(MOST_ROWS)
+    rise = slopes(few.weighted, x, np.zeros(1, int), central=True)[1][0]
+    size = np.linalg.norm(rise, axis=0) + 1e-300
+    _, values, rows = np.linalg.svd(rise / size, full_matrices=False)
+    sure = values > _DEPENDENT * values[0]
+    loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
+    spread = rows[sure].T / values[sure] / size[:, np.newaxis]
+    a, b = x[0, :2]
+    loose[0] |= a <= max(_LEAST * np.linalg.norm(spread[0]), b * b / _FASTEST)  # a <= 0 is no top
+    meant = {"tilt": "theta0", "lean": "psi_zero", "p": "thetadot0", "q": "psidot0"}
+    unknown = (meant.get(y, y) for y, z in zip(problem.names, loose, strict=True) if z)
+    chi2 = float(np.sum(problem.weighted(x[:, np.newaxis]) ** 2))
+    return Minimum(problem, x[0], spread, chi2, (*unknown,))
+
+
+def converged(
+    problem: Problem, x: Array, floors: Array, factors: Array | float = 1.0, *, final: bool = False
+) -> Minimum:
+    """Return the minimum near parameters of one start.
+
+    Standard deviations that were not given come from the residuals; they are at least the
+    `floors`.  `factors` widen them for noise that is correlated.  The last steps with all rows, and
+    the shape of chi^2, are for a `final` minimum.
+    """
+    whole, is_given = problem.recording.t.size, bool(problem.recording.sigma)
+    problem = replace(problem, sizes=problem.sizes * factors) if is_given else problem
+    for rows in (MOST_ROWS, *[whole] * (final and whole > MOST_ROWS)):
+        few = problem.thinned(rows)
+        if is_given:
+            x, _ = few.solve(x, _STEPS, central=final)
+        else:
+            few, x = few.reweighted(x, floors, _STEPS // 2, central=final)
+            problem = replace(problem, sizes=few.sizes)
+    problem = problem if is_given else replace(problem, sizes=problem.sizes * factors)
+    found = minimum_at(problem, x)
+    return shaped(found) if final else found
+
+
+def tied(found: Minimum, ties: Ties) -> Minimum:
+    """Return the minimum that obeys known inputs; its spread is that without them."""
+    problem = replace(found.problem, ties=ties)
+    x = found.x[np.newaxis]
+    for few in (problem.thinned(MOST_ROWS), *[problem] * (problem.recording.t.size > MOST_ROWS)):
+        x, _ = few.solve(x, _STEPS)
+    return replace(minimum_at(found.problem, x), is_curved=found.is_curved)
+
+
+def shaped(found: Minimum) -> Minimum:
+    """Return the minimum with a spread that is as wide as chi^2 is two standard deviations away.
+
+    Chi^2 should have grown by 4 at either end of each axis of the spread.  Where it grows by much
+    more, its valley is bent, and the floor of the valley is searched for.  Without a floor on
+    either side, or if a or b is far aside on it, the covariance is wrong.
+    """
+    few = found.problem.thinned(_SHAPE_ROWS)
+    here, x = few.weighted(found.x[np.newaxis, np.newaxis]), found.x
+    rows = np.linalg.pinv(found.spread)
+    wanted = np.concatenate([2 * np.eye(len(rows)), -2 * np.eye(len(rows))])
+    ends = x + wanted @ found.spread.T
+    grown = np.sum((few.weighted(ends[np.newaxis]) - here) ** 2, axis=-1)[0] / 4
+    bent, is_aside = np.flatnonzero(grown > _BENT), False
+    if bent.size:
+        axes = bent % len(rows)
+        held = replace(few, first=np.repeat(few.first, bent.size, axis=0))
+
+        def rest(at: Array, who: Array) -> Array:
+            off = np.einsum("kti,ki->kt", at - x, rows[axes[who]])
+            off = _STIFF * (off - wanted[bent, axes][who, np.newaxis])
+            return np.concatenate([held.weighted(at, who) - here, off[..., np.newaxis]], axis=-1)
+
+        floor, chi2 = descended(rest, ends[bent], 20)
+        grown[bent] = chi2 / 4
+        stds = np.linalg.norm(found.spread[:2], axis=1) + 1e-300
+        is_aside = bool(np.any(np.abs(floor - ends[bent])[:, :2] / stds > _ASIDE))
+    least = grown.reshape(2, -1).min(axis=0, initial=np.inf)
+    factors = np.sqrt(1 / np.clip(least, 1e-2, 1))
+    is_curved = is_aside or bool(np.any(least > _BROKEN))
+    return replace(found, spread=found.spread * factors, is_curved=is_curved)
+
+
+def slowest(found: Minimum, turn: float, sure: float) -> Minimum:
+    """Return a minimum with the slowest spin of a rigid body that looks alike in the rows.
+
+    Its b has a sign, and r0 with it, if it is `sure` standard deviations from 0.
+    """
+    if not turn or not found.problem.spins or found.problem.ties:
+        return found
+    v, std = found.values, found.std("b")
+    rates = v["r0"] + turn * np.arange(-3, 4)
+    if abs(v["b"]) > sure * std:
+        low, high = (v["b"] - 2 * np.copysign(std, v["b"])) / rates, v["b"] / rates
+        rates = rates[(high > 0) & (low <= 2)]
+    rate = float(rates[np.argmin(np.abs(rates))]) if rates.size else v["r0"]
+    return found.turned(rate - v["r0"]) if rate != v["r0"] else found
+
+
+def largest(problem: Problem, x: Array) -> Any:
+    """Return the largest rms residual of a channel at parameters of one start, in radians."""
+    return np.sqrt(np.nanmean(problem.residuals(x[:, np.newaxis]) ** 2, axis=-1)).max()
