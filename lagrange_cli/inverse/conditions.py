@@ -36,6 +36,8 @@ _VAGUE = 0.5
 recording does not determine it."""
 _START = ("theta0", "thetadot0", "psidot0")
 Values = Mapping[str, Any]
+Estimate = tuple[float, float, float]
+"""A number, its standard deviation, and the one if known inputs are exact."""
 
 
 def estimates(has: Values, v: Values, *, spins: bool) -> dict[str, Array]:
@@ -122,19 +124,18 @@ class Vector:
         has = "r0" in {replaced_by(x) for x in self.known}
         return float(self.motion(self.z[np.newaxis])["r0"][0]) if has else 0.0
 
+    def estimates(self, at: Array) -> dict[str, Array]:
+        """Return what the motion and the other known inputs give for known inputs."""
+        return estimates(self.inputs(at), self.motion(at), spins=self.best.problem.spins)
+
     def slopes(self, function: Callable[[Array], Mapping[str, Array]], z: Array) -> Array:
         """Return the derivatives of functions, by a share of the standard deviations."""
         steps = np.maximum(1e-2 * np.linalg.norm(self.spread, axis=1), 1e-9 * (np.abs(z) + 1e-3))
         found = _stacked(function, np.concatenate([z + np.diag(steps), z - np.diag(steps)]))
         return np.asarray((found[: z.size] - found[z.size :]).T / (2 * steps))
 
-    def numbers(
-        self, function: Callable[[Array], Mapping[str, Array]]
-    ) -> dict[str, tuple[float, float, float]]:
-        """Return finite functions of the vector, with standard deviations.
-
-        The second one is the standard deviation if known inputs are exact.
-        """
+    def numbers(self, function: Callable[[Array], Mapping[str, Array]]) -> dict[str, Estimate]:
+        """Return finite functions of the vector, with standard deviations."""
         if not (names := [*function(self.z[np.newaxis])]):
             return {}
         rise = self.slopes(function, self.z) @ self.spread
@@ -176,71 +177,63 @@ class Comparison:
     """Whether a known C selects the spin."""
 
 
-def known_spin(best: Minimum, known: Known, turn: float) -> tuple[float, bool]:
-    """Return the whole turns per row to add to r0 for known inputs, and if C can be compared.
-
-    Without r0, a C selects one of the spins that look alike if b is known well enough.
-    """
-    if not turn or not best.problem.spins:
-        return 0.0, True
-    v, has = best.values, {x: y for x, (y, _) in known.items()}
-    start = {x: v[x] for x in ("theta0", "psidot0")}
-    whole = in_all_forms(has | start)
-    if whole.has("r0"):
-        return whole_turns(v["r0"], float(whole["r0"]), turn), True
-    own = in_all_forms(has)
-    weight = 2 * math.prod(has.get(x, math.nan) for x in ("m", "g", "s"))
-    moment = own["A"] if own.has("A") else weight / v["a"]
-    if "C" not in has or not math.isfinite(wanted := v["b"] * moment / has["C"]):
-        return 0.0, True
-    parts = [known["C"], known.get("A", (1.0, 0.0)), *((v[x], best.std(x)) for x in ("a", "b"))]
-    spread = math.hypot(*(std / (y or 1e-300) for y, std in parts))
-    turns = abs(wanted) / turn
-    if turns > _MOST_TURNS:
-        return 0.0, True
-    is_selected = turns <= 0.5 or turns * spread * _SELECTS <= 1
-    return whole_turns(v["r0"], wanted, turn) if is_selected else 0.0, is_selected
-
-
 def compare(best: Minimum, known: Known, scale: float, turn: float) -> Comparison:
     """Return a minimum that was found without known inputs, with all that they say.
 
     Known inputs are in units of the recording, of which the unit of time of the minimum is `scale`.
+    If whole turns of the spin per row are invisible, `turn` is their rate, else 0.
     """
-    inputs, spins = scaled_known(known, scale), best.problem.spins
-    shift, has_moment = known_spin(best, inputs, turn)
-    found = Comparison(Vector(best.turned(shift) if shift else best, inputs))
-    vector, found.is_selected = found.vector, bool(shift)
-    if not has_moment:
-        unused = "known C is not used: it does not show how many turns per row the spin makes"
-        found.notes.append(unused)
-
-    def given(vector: Vector, at: Array) -> dict[str, Array]:
-        shown = estimates(vector.inputs(at), vector.motion(at), spins=spins)
-        return {x: y for x, y in shown.items() if has_moment or x != "C"}
-
-    def off(at: Array) -> dict[str, Array]:
-        has = vector.inputs(at)
-        return {x: y - has[x] for x, y in given(vector, at).items()}
-
-    found.free = {x: y for x, (_, y, _) in vector.numbers(vector.motion).items()}
-    slow = Vector(best, inputs)
-    slowest = given(slow, slow.z[np.newaxis]) if shift else {}
-    for name, (value, std, _) in vector.numbers(lambda at: given(vector, at)).items():
+    vector, slowest = Vector(best, scaled_known(known, scale)), dict[str, Estimate]()
+    found, given = Comparison(vector), vector.numbers(vector.estimates)
+    found.free = {x: std for x, (_, std, _) in vector.numbers(vector.motion).items()}
+    if turn and best.problem.spins:
+        wanted, is_sure = _spin(vector, given, turn)
+        if not is_sure:
+            del given["C"]
+            unused = "known C is not used: it does not show how many turns per row the spin makes"
+            found.notes.append(unused)
+        if shift := whole_turns(best.values["r0"], wanted, turn):
+            vector, slowest = Vector(best.turned(shift), vector.known), given
+            found.vector, given, found.is_selected = vector, vector.numbers(vector.estimates), True
+    for name, (value, std, _) in given.items():
         if name not in _START and std > _VAGUE * abs(value):
             continue
         size = scale ** time_power(name)
-        other = float(slowest[name][0]) * size if shift else None
-        own = value * size, std * size
-        far, agrees, text = compared(name, known[name], own, known, other)
-        found.distances[name] = far
-        (found.notes if agrees else found.contradictions).append(text)
+        other = slowest[name][0] * size if slowest else None
+        text = compared(name, known[name], (value * size, std * size), known, other)
+        found.distances[name] = text[0]
+        (found.notes if text[1] else found.contradictions).append(text[2])
     if "steady" in known:
         steady = "known psidot0 = steady contradicts the recording, which nutates: omit "
         found.contradictions.append(Message(steady + arg("psidot0")))
-    if not found.contradictions and (tests := vector.numbers(off)):
-        least = {x: _HELD * std + 1e-12 for x, (_, std, _) in tests.items()}
-        ties = ties_of(vector.known, least, spins=spins)
-        vector = found.vector = Vector(tied(vector.best, ties), inputs)
-        vector.conditioned(off)
+    if given and not found.contradictions:
+
+        def off(at: Array) -> dict[str, Array]:
+            has = found.vector.inputs(at)
+            return {x: y - has[x] for x, y in found.vector.estimates(at).items() if x in given}
+
+        least = {x: _HELD * std + 1e-12 for x, (_, std, _) in vector.numbers(off).items()}
+        ties = ties_of(vector.known, least, spins=best.problem.spins)
+        found.vector = Vector(tied(vector.best, ties), vector.known)
+        found.vector.conditioned(off)
     return found
+
+
+def _spin(vector: Vector, given: Mapping[str, Estimate], turn: float) -> tuple[float, bool]:
+    """Return the r0 that known inputs imply, and whether a known C selects it.
+
+    Without a known spin, a C selects one of the spins that look alike if b is known well enough.
+    """
+    v, has = vector.best.values, {x: y for x, (y, _) in vector.known.items()}
+    whole = in_all_forms({**has, "theta0": v["theta0"], "psidot0": v["psidot0"]})
+    if whole.has("r0"):
+        return float(whole["r0"]), True
+    if "C" not in given:
+        return v["r0"], True
+    (value, std, _), (known, error) = given["C"], vector.known["C"]
+    wanted = v["r0"] * value / known
+    spread, turns = math.hypot(std / value, error / known), abs(wanted) / turn
+    if turns > _MOST_TURNS:
+        return v["r0"], True
+    is_sure = turns <= 0.5 or turns * spread * _SELECTS <= 1
+    return wanted if is_sure else v["r0"], is_sure

@@ -1,8 +1,10 @@
 """The motion of a top from the attitude and the angular velocity in its first row, and residuals.
 
 The parameters are a = 2mgs/A, b = C r0/A, a small turn of an approximate first attitude about the
-line of nodes (`tilt`) and across it (`lean`, if psi is recorded), the rates p and q about these two
-axes, and if the spin is recorded, its rate r0 and its zero.  None is singular on the vertical.
+line of nodes (`tilt`) and across it (`lean`), the rates p and q about the line of nodes and across
+it in the body, and if the spin is recorded, its rate r0 and its zero.  None is singular on the
+vertical.  If psi is not recorded, a turn about the vertical is invisible, so that `lean` is about
+the axis across the vertical, and no zero of phi is needed.
 """
 
 from __future__ import annotations
@@ -44,7 +46,7 @@ class Problem:
     sizes: Array
     """Standard deviations of the channels."""
     first: Array
-    """Approximate attitudes in the first row, with phi = 0: a quaternion for each start."""
+    """Approximate theta, phi and psi in the first row, shape (starts, 3)."""
     ties: Ties | None = None
     turns: float = 0.0
     """Whole turns of the spin per row, as a rate, that r0 exceeds the visible rate by."""
@@ -57,8 +59,9 @@ class Problem:
     @property
     def names(self) -> list[str]:
         """The names of the parameters."""
-        lean, spin = ["lean"] * ("psi" in self.recording.angles), ["r0", "phi_zero"] * self.spins
-        return ["a", "b", "tilt", *lean, "p", "q", *spin]
+        angles = self.recording.angles
+        lean, zero = ["lean"] * (angles.keys() != {"theta"}), ["phi_zero"] * ("psi" in angles)
+        return ["a", "b", "tilt", *lean, "p", "q", *["r0", *zero] * self.spins]
 
     def at(self, start: int) -> Problem:
         """Return the problem of one start."""
@@ -67,10 +70,15 @@ class Problem:
     def _started(self, x: Array, who: Any) -> tuple[dict[str, Array], Array, Array, Array]:
         """Return parameters by name, the states of `motions.angles`, and phi and psi at first."""
         v: dict[str, Array] = dict(zip(self.names, np.moveaxis(x, -1, 0), strict=True))
-        turn = np.stack(np.broadcast_arrays(v["tilt"], v.get("lean", 0.0), 0.0), axis=-1) / 2
+        theta, spun, turned = np.moveaxis(self.first[who][:, np.newaxis], -1, 0)
+        lean, zero = v.get("lean", 0.0), v.get("phi_zero", 0.0)
+        if "psi" not in self.recording.angles:
+            lean, zero = lean * np.cos(theta), -lean * np.sin(theta)
+        turn = np.stack(np.broadcast_arrays(v["tilt"], lean, 0.0), axis=-1) / 2
         size = np.linalg.norm(turn, axis=-1, keepdims=True)
         small = np.concatenate([np.cos(size), np.sinc(size / np.pi) * turn], axis=-1)
-        w, i, j, k = np.moveaxis(rotations.product(self.first[who][:, np.newaxis], small), -1, 0)
+        first = rotations.of_angles(theta, 0 * turned, turned)
+        w, i, j, k = np.moveaxis(rotations.product(first, small), -1, 0)
         upper, lower = np.arctan2(k, w), np.arctan2(j, i)
         phi, psi = upper - lower, upper + lower
         sine, cosine = np.sin(phi), np.cos(phi)
@@ -78,7 +86,7 @@ class Problem:
         motion = np.maximum(v["a"], _LEAST_A), v["b"], np.hypot(i, j), np.hypot(w, k), across, along
         states = np.stack(motion, axis=-1)
         v["r0"] = v["r0"] if self.spins else states[..., 1]
-        return v, states, phi + v.get("phi_zero", 0.0), psi
+        return v, states, phi + spun + zero, psi
 
     def values(self, x: Array, who: Any = slice(None)) -> dict[str, Array]:
         """Return the quantities of motions; psi' on the vertical is infinite or undefined."""
@@ -118,10 +126,10 @@ class Problem:
         """Return parameters with the spin that suits the others best, and weighted residuals."""
         rest = self.residuals(x, who)
         if self.spins and not self.ties:
-            one, x, at = self.recording, x.copy(), [*map(self.names.index, ("r0", "phi_zero"))]
+            one, x = self.recording, x.copy()
+            at = [self.names.index(y) for y in ("r0", "phi_zero") if y in self.names]
             channel = one.channels.index(one.spin_channel)
-            seen = one.present[channel]
-            line = np.stack([one.t, 0 * one.t + 1])
+            seen, line = one.present[channel], np.stack([one.t, 0 * one.t + 1][: len(at)])
             change = rest[..., channel, :][..., seen] @ np.linalg.pinv(line[:, seen])
             x[..., at] += change
             rest[..., channel, :] = within_half_turn(rest[..., channel, :] - change @ line)
@@ -164,6 +172,6 @@ def problem_of(
     """
     a, b, theta, rate, turn = states.T
     psi, phi, spin = zeros
-    problem = Problem(recording, sizes, rotations.of_angles(theta, 0 * psi, psi), ties)
-    v = {"a": a, "b": b, "p": rate, "q": turn * np.sin(theta), "r0": spin, "phi_zero": phi}
+    problem = Problem(recording, sizes, np.stack([theta, phi, psi], axis=-1), ties)
+    v = {"a": a, "b": b, "p": rate, "q": turn * np.sin(theta), "r0": spin}
     return problem, np.stack([v.get(name, 0 * a) for name in problem.names], axis=-1)

@@ -39,7 +39,7 @@ from .signals import (
     signals_in,
     step_between,
 )
-from .starts import ALIKE, best_starts
+from .starts import best_starts, distinct
 from .steady import steady_outcome
 
 _STARTS = (12, 40)
@@ -238,10 +238,10 @@ def _minima(
         if not len(x):
             continue
         for rows, steps, gain, kept in _STAGES:
-            few = problem.thinned(rows)
-            x, chi2 = few.solve(_rephased(few, x), steps, gain, central=False)
-            best = _distinct(x, chi2)[:kept]
-            problem, x, chi2 = replace(problem, first=problem.first[best]), x[best], chi2[best]
+            few, x = _rephased(problem.thinned(rows), x)
+            x, chi2 = few.solve(x, steps, gain, central=False)
+            best = distinct(x, chi2, kept)
+            problem, x, chi2 = replace(problem, first=few.first[best]), x[best], chi2[best]
         found += [(y, problem.at(i), x[i : i + 1]) for i, y in enumerate(chi2.tolist())]
     if not found:
         return []
@@ -252,30 +252,19 @@ def _minima(
     return [converged(y, z, floors) for chi2, y, z in found if chi2 <= _COMPARABLE * least]
 
 
-def _distinct(x: Array, chi2: Array) -> list[int]:
-    """Return the best ends that differ in a or b, in units of the period, the best first."""
-    found: list[int] = []
-    for i in np.argsort(chi2).tolist():
-        near = np.abs(x[found, :2] - x[i, :2]) < ALIKE * (1 + np.abs(x[i, :2]))
-        if not near.all(axis=1).any():
-            found.append(i)
-    return found
-
-
-def _rephased(problem: Problem, x: Array) -> Array:
-    """Return parameters whose spin is right to a turn over the recording."""
+def _rephased(problem: Problem, x: Array) -> tuple[Problem, Array]:
+    """Return the problem and parameters whose spin is right to a turn over the recording."""
     if not problem.spins:
-        return x
-    one, x = problem.recording, x.copy()
+        return problem, x
+    one, x, first = problem.recording, x.copy(), problem.first.copy()
     rest = problem.residuals(x[:, np.newaxis])[:, 0, one.channels.index(one.spin_channel)]
     for i, y in enumerate(rest):
         seen = np.isfinite(y)
         if seen.any() and np.mean(y[seen] ** 2) > _IN_PHASE**2:
             rate = mean_rate(one.t[seen], y[seen], one.frame)
             x[i, problem.names.index("r0")] += rate
-            left = np.sum(np.exp(1j * (y[seen] - rate * one.t[seen])))
-            x[i, problem.names.index("phi_zero")] += np.angle(left)
-    return x
+            first[i, 1] += np.angle(np.sum(np.exp(1j * (y[seen] - rate * one.t[seen]))))
+    return replace(problem, first=first), x
 
 
 def _widening(found: Minimum, floors: Array) -> Array:

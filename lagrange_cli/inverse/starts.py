@@ -34,7 +34,7 @@ _KEPT = 1500
 """Starts that are compared at more rows."""
 _BLOCK = 2000
 """Starts that are compared at once."""
-ALIKE = 0.02
+_ALIKE = 0.02
 """Difference of a and b, over 1 + their size in units of the period, of starts that are alike."""
 
 
@@ -140,14 +140,18 @@ def best_starts(
         noise, zeros = (np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
         order = np.argsort(noise)[:_KEPT]
         states, zeros = states[order], zeros[:, order]
-    kept: list[int] = []
-    for i in np.flatnonzero(np.isfinite(noise[order])):
-        near = np.abs(states[kept, :2] - states[i, :2]) < ALIKE * (1 + np.abs(states[i, :2]))
-        if not near.all(axis=1).any():
-            kept.append(int(i))
-        if len(kept) == most:
-            break
+    kept = distinct(states, noise[order], most)
     return states[kept], zeros[:, kept]
+
+
+def distinct(tops: Array, sizes: Array, most: int) -> list[int]:
+    """Return the tops of least finite size that differ in a or b, the first two columns."""
+    kept: list[int] = []
+    for i in np.argsort(sizes)[: np.isfinite(sizes).sum()].tolist():
+        near = np.abs(tops[kept, :2] - tops[i, :2]) < _ALIKE * (1 + np.abs(tops[i, :2]))
+        if len(kept) < most and not near.all(axis=1).any():
+            kept.append(i)
+    return kept
 
 
 def _scored(
