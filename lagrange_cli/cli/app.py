@@ -32,6 +32,7 @@ _MODULES = {
     "stability": "bench",
 }
 """Commands that share the module of another command."""
+_WITHOUT_NUMPY = frozenset({"solve", "explain", "scenes", "jacobi", "eta"})
 _COMPLETION = "_LAGTOP_COMPLETE"
 _LAST_SECOND = 253_402_300_799
 
@@ -55,6 +56,22 @@ def _lack_of_memory(error: Exception) -> str:
     if not re.search("failed to map segment|allocate memory|start new thread", str(error)):
         raise error
     return f"out of memory or threads: {error}"
+
+
+def _check_memory(command: str) -> None:
+    """Raise UnavailableError if NumPy and SciPy do not fit: OpenBLAS may wait for memory for ever.
+
+    The sizes are those of one thread of OpenBLAS, which suffices here.
+    """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    size = {"table": 100}.get(command, 0 if command in _WITHOUT_NUMPY else 220)
+    if size and os.name == "posix":
+        import mmap  # start-up
+
+        try:
+            mmap.mmap(-1, size << 20, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS).close()
+        except OSError:
+            raise UnavailableError(f"out of memory: {command} needs {size} MB") from None
 
 
 def complain_of_bug(error: Exception) -> None:
@@ -89,6 +106,7 @@ class LagtopGroup(click.Group):
         if cmd_name not in NAMES:
             hint = suggestion(cmd_name, [*NAMES, "--help", "--version"])
             raise click.UsageError(f"no such command: {cmd_name!r}{hint}", ctx)
+        _check_memory(cmd_name)
         module = import_module(f".{_MODULES.get(cmd_name, cmd_name)}", __package__)
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command

@@ -159,6 +159,13 @@ def test_closed_standard_input(line: str) -> None:
     assert (done.returncode, done.stdout, done.stderr.decode()) == (65, b"", said)
 
 
+def test_too_little_memory_for_numpy_and_scipy() -> None:
+    """OpenBLAS may wait for it without end, and then no signal but SIGKILL stops the program."""
+    done = shell("ulimit -v 180000; $LAGTOP sweep")
+    said = b"Error: out of memory: sweep needs 220 MB\n"
+    assert (done.returncode, done.stdout, done.stderr) == (69, b"", said)
+
+
 def test_closed_standard_error_and_a_file(tmp_path: Path) -> None:
     """No file that is opened later becomes standard error: messages are lost."""
     assert shell(f"$LAGTOP sweep --r0 40,x -o {tmp_path}/out.csv 2>&-").returncode == 2
