@@ -1,14 +1,12 @@
 """`find`: inputs for which numbers of the record take target values.
 
-A scan by `sweep` supplies the starting points.  One unknown is found by the method of
-Chandrupatla between neighbouring values of the scan, several unknowns by least squares from its
-best points.  The border of a class, such as a path with loops, is found by bisection.  All refine
-with `solve`.
+A scan by `sweep` supplies the starting points.  One unknown, and the border of a class such as a
+path with loops, are found by bisection between neighbouring values of the scan, several unknowns by
+least squares from its best points.  All refine with `solve`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Integral
 from types import NoneType
@@ -241,17 +239,16 @@ def _borders(search: Search, values: Array) -> list[list[float]]:
     words = np.array(search.sweep(values)[wanted.key], object)
     if (words == wanted.value).all():
         raise _undetermined(search, values[:, 0])
+
+    def word_at(x: float) -> Any:
+        return solve(search.top([x])).record(keys=[wanted.key])[wanted.key]
+
     borders = set()
     for i in np.flatnonzero(words[:-1] != words[1:]).tolist():
         ends = [words[i], words[i + 1]]
         if None in ends or (wanted.value in words) != (wanted.value in ends):
             continue
-        low, high = values[i : i + 2, 0].tolist()
-        while low < (middle := low + (high - low) / 2) < high:
-            found = solve(search.top([middle])).record(keys=[wanted.key])[wanted.key]
-            low, high = (middle, high) if found == ends[0] else (low, middle)
-            if found == wanted.value not in ends:
-                break
+        low, high = _bisected(word_at, *values[i : i + 2, 0].tolist())
         border = low if ends[0] == wanted.value else high
         borders.add(border if abs(border) > _TINY else 0.0)
     return [[x] for x in sorted(borders)]
@@ -277,42 +274,23 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
 
     roots = set()
     for i in np.flatnonzero((y[:-1] * y[1:] <= 0) | near[:-1] | near[1:]).tolist():
-        low, high = x[i : i + 2].tolist()
-        root = _root(residual, low, high)
-        if root is None:
+        ends = x[i : i + 2].tolist()
+        if not residual(ends[0]) * residual(ends[1]) <= 0:
             continue
-        ends = np.fmax(*np.abs(y[i : i + 2]))
-        if abs(residual(root)) <= _LEAP * ends + 4 * np.spacing(abs(target)):
+        found = _bisected(lambda at: np.sign(residual(at)), *ends)
+        root = min(found, key=lambda at: abs(residual(at)))
+        most = np.fmax(*np.abs(y[i : i + 2]))
+        if abs(residual(root)) <= _LEAP * most + 4 * np.spacing(abs(target)):
             roots.add(root)
     return [[x] for x in sorted(roots)]
 
 
-def _root(f: Callable[[float], float], low: float, high: float) -> float | None:
-    """Return a root by the method of Chandrupatla (1997): bisection or inverse interpolation.
-
-    Return None if there is no change of sign, or no number between the ends.
-    """
-    a, b, f_a, f_b = high, low, f(high), f(low)
-    c, f_c, share = a, f_a, 0.5
-    if not f_a * f_b <= 0:
-        return None
-    while f_a and f_b:
-        x = a + share * (b - a)
-        if x in {a, b} or math.isnan(f_x := f(x)):
-            break
-        if (f_x > 0) == (f_a > 0):
-            c, f_c = a, f_a
-        else:
-            c, f_c, b, f_b = b, f_b, a, f_a
-        a, f_a = x, f_x
-        ratio, rise = (a - b) / (c - b), (f_a - f_b) / (f_c - f_b)
-        share = 0.5
-        if rise**2 < ratio and (1 - rise) ** 2 < 1 - ratio:
-            third = f_a / (f_b - f_a) * f_c / (f_b - f_c)
-            share = third + (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b)
-        least = min(0.5, 2 * np.spacing(abs(a)) / (abs(b - a) or 1.0))
-        share = min(max(share, least), 1 - least)
-    return a if abs(f_a) <= abs(f_b) else b
+def _bisected(f: Callable[[float], Any], low: float, high: float) -> tuple[float, float]:
+    """Return neighbouring numbers, or close ones next to 0, between which f changes."""
+    first = f(low)
+    while low < (middle := low + (high - low) / 2) < high and high - low > _TINY:
+        low, high = (middle, high) if f(middle) == first else (low, middle)
+    return low, high
 
 
 def _around(cube: Array, extreme: Any, beyond: float) -> Array:
@@ -391,7 +369,7 @@ def _is_curve(solved: Callable[[Array], Any], ended: Any) -> bool:
 
 def _undetermined(search: Search, values: Array | None = None) -> LagtopError:
     """Return the error of conditions that many values of the unknowns meet, such as these."""
-    names, goals = " and ".join(search.spans), ", ".join(map(str, search.goals))
+    names, goals = " and ".join(map(arg, search.spans)), ", ".join(map(str, search.goals))
     where = "" if values is None else f" from {values[0]:g} to {values[-1]:g}"
     sleeps = search.goals[0].value == Regime.SLEEPING
     remedy = "stability_factor=1" if sleeps else "another condition, or another unknown"
