@@ -116,15 +116,14 @@ def _with_numbers(motion: Motion, row: Explained, used: Sequence[str]) -> str:
     """Return a formula with the numbers of a motion; small differences are named at its end."""
     names, symbols = {bare_name(name): name for name in used}, _symbols()
     key = "" if row.kind == "column" else row.name
-    texts, formula, ends = worked(motion, key, row.text, names), row.text, list[str]()
-    for part in texts.keys() - names.keys():
-        name = f"gap_{len(ends)}"
-        formula, symbols[name] = formula.replace(part, f"~{name}"), _shown(part, symbols)
-        ends.append(f"{symbols[name][1:-1]} = {texts[part]}")
+    formula, gaps, texts = worked(motion, key, row.text, names)
     numbers = {x: f"{texts[x]}{'°' * y.endswith('_deg')}" for x, y in names.items()}
-    shown = _shown(formula, symbols | numbers, "·").replace("~", "")
+    shown, differences = _shown(formula, symbols | numbers, "·"), list[str]()
+    for name, part in gaps.items():
+        shown = shown.replace(name, _shown(part, symbols))
+        differences.append(f"{_shown(part, symbols)} = {texts[name]}")
     before = ", " if " where " in shown else " where "
-    return before.join([shown, ", ".join(ends)]) if ends else shown
+    return before.join([shown, ", ".join(differences)]) if differences else shown
 
 
 def _named_by(symbol: str, rows: Sequence[Explained]) -> str:

@@ -66,7 +66,7 @@ def uncertain_record(
 
 def _to_the_last_digit(motion: Motion, key: str, value: float, std: float) -> float | str:
     """Return a number of a motion with as many digits as its uncertainty has."""
-    digits = math.ceil(math.log10(abs(value) / std)) + 3 if value and std else 0
+    digits = math.ceil(math.log10(abs(value)) - math.log10(std)) + 3 if value and std else 0
     if digits <= sys.float_info.dig:
         return value
     found = motion.number(key, digits)

@@ -161,6 +161,12 @@ def test_numbers_differ_in_as_many_digits_as_that_takes() -> None:
         assert float(high) == pytest.approx(record["theta_max_deg"], rel=1e-3)
 
 
+def test_small_differences_are_named_in_order() -> None:
+    (row,) = explanations(solve(Top(r0=55.2, theta0_deg=176.3)), ["mean_precession_rate"])
+    named = re.findall(r", (\S+ [+-] \S+) = ", row.numbers)
+    assert named == ["u1 - u2", "β + b", "u2 - u1", "1 + u2"]
+
+
 def test_a_number_beyond_the_doubles_has_digits_in_solve(lagtop: Lagtop) -> None:
     """`explain` itself has no --digits."""
     result = lagtop("explain", "precession_rate_elementary", "--g", 5e-324)

@@ -108,6 +108,16 @@ def test_at_the_end_of_a_range_one_direction_counts() -> None:
         assert (found.std, found.fair) == (stds[name], True)
 
 
+def test_ratios_beyond_the_doubles() -> None:
+    """a = 2mgs/A and b = C r0/A grow with g and with r0."""
+    for name, value, std, key in (("g", 1e-318, 1e-3, "a"), ("r0", 1e95, 1e-310, "b")):
+        motion = solve(Top(**{name: value}))
+        found, unit = Spread(motion, {name: std}).number(key), solve(Top(**{name: 1.0})).number(key)
+        assert found is not None
+        assert unit is not None
+        assert found.std == pytest.approx(unit.value * std, rel=1e-12)
+
+
 def test_a_root_that_is_0_on_one_side_is_not_fair() -> None:
     """2 sqrt(A m g s max(cos theta0, 0))/C at 90 degrees: half the difference grows as a root."""
     found = Spread(solve(Top(theta0_deg=90)), {"theta0_deg": 0.1}).number("r0_steady_min")
