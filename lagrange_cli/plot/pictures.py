@@ -377,15 +377,15 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     own = float(inputs[x]), float(inputs[y])
     inputs["psidot0"] = motion.top.as_dict()["psidot0"]  # it may be a word
     inputs |= {x: xs[np.newaxis, :], y: ys[:, np.newaxis]}
-    found = sweep(keys=list(dict.fromkeys([key, "stability_factor", "b", "u1"])), **inputs)
+    for_borders = "stability_factor", "momentum_constant", "b", "u1"
+    found = sweep(keys=list(dict.fromkeys([key, *for_borders])), **inputs)
     title = (draw_words if key in WORDS else draw_numbers)(ax, (xs, ys), found[key], key, options)
-    borders = {"border of stability (upright top)": (found["stability_factor"] - 1, look.ink, "--")}
+    stable, beta, b, u1 = (found[x] for x in for_borders)
+    borders = {"border of stability (upright top)": (stable - 1, look.ink, "--")}
     if key == "path":  # beta - b u, and with it the precession, is 0 at u1, at u = 1 or at u = -1
-        size = np.nanmax(np.abs(found["b"]), initial=0.0) or 1.0
-        tilts = inputs[tilt] / options.units.radian
-        b, around = found["b"] / size, inputs["psidot0"] / size * np.sin(tilts) ** 2
-        beta = b * np.cos(tilts) + around * (b != 0)  # a top without spin has no cusps
-        borders["cusped"] = beta - b * found["u1"], look.ink, "-"
+        size = np.nanmax(np.abs(b), initial=0.0) or 1.0
+        beta, b = np.where(b, beta, 0.0) / size, b / size  # a top without spin has no cusps
+        borders["cusped"] = beta - b * u1, look.ink, "-"
         borders["through the vertical"] = beta**2 - b**2, look.lines[0], "-"
     for label, (height, colour, dashes) in borders.items():
         if np.any(height < -1e-9) and np.any(height > 1e-9):

@@ -287,6 +287,8 @@ def test_a_map_of_paths_shows_cusps_at_the_border() -> None:
         assert to_hex(axes.collections[0].to_rgba(cells[i, j])) == colours[path]
     lines = [np.concatenate([x.vertices for x in y.get_paths()]) for y in axes.collections[1:]]
     assert np.abs(lines[1][:, 0]).max() < 1e-9  # released from rest: cusps
+    (steady,) = drawn("map", solve(Top(r0=60, psidot0="steady")), key="path").axes
+    assert "wavy" not in {x.get_text() for x in steady.get_legend().get_texts()}
 
 
 # --- film and reports
