@@ -115,10 +115,3 @@ def test_a_file_without_end_is_refused(words: str) -> None:
     assert b"must have at most" in done.stderr
 
 
-@pytest.mark.slow
-def test_many_columns_are_read_at_once(tmp_path: Path) -> None:
-    """The time must not grow with the square of their number: it took minutes."""
-    path, start = tmp_path / "file", time.process_time()
-    path.write_text("r0,t," + ",".join(f"x{i}" for i in range(100_000)) + "\n")
-    read_by_all(str(path))
-    assert time.process_time() - start < 60
