@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import subprocess
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -113,5 +112,3 @@ def test_a_file_without_end_is_refused(words: str) -> None:
     assert (done.returncode, done.stdout) == (65, b"")
     assert done.stderr.count(b"\n") == 1
     assert b"must have at most" in done.stderr
-
-

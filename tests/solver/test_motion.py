@@ -8,7 +8,6 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from chrapan_top import ar
 from conftest import Lagtop, tables_of
 from errata import FIGURES, round_alike, true_values
 from lagtop import LagtopError, Top, compare, fit, solve
@@ -117,10 +116,10 @@ def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
     steps = dict(zip(derivation_keys(), cells.split(","), strict=True))
     assert {x.key for x in FIGURES} == {*[*derivation_keys()][7:]}
     right, values = 0, true_values()
-    with ar.workdps(40):
+    with mpmath.workdps(40):
         for figure in FIGURES:
             true = round_alike(values[figure.key], figure.text)
-            assert round_alike(ar.mpf(steps[figure.key]), figure.text) == true, figure.name
+            assert round_alike(mpmath.mpf(steps[figure.key]), figure.text) == true, figure.name
             right += true == figure.text
     assert (right, len(FIGURES)) == (16, 30)
 
