@@ -45,7 +45,6 @@ class Minimum:
     x: Array
     spread: Array
     """A matrix S with the covariance S S^T of the parameters."""
-    chi2: float
     unknown: tuple[str, ...] = ()
     """Parameters that the recording does not determine."""
     is_curved: bool = False
@@ -53,11 +52,12 @@ class Minimum:
     is_hopeless: bool = False
     """Whether no motion of a top is near the recording."""
 
-    @property
-    def badness(self) -> float:
-        """Minus twice the logarithm of the likelihood."""
-        rows = self.problem.recording.present.sum(axis=1)
-        return self.chi2 + 2 * float(rows @ np.log(self.problem.sizes))
+    def badness(self, rows: int = MOST_ROWS) -> float:
+        """Return minus twice the logarithm of the likelihood of some rows."""
+        few, one = self.problem.thinned(rows), self.problem.recording
+        chi2 = float(np.sum(few.weighted(self.x[np.newaxis, np.newaxis]) ** 2))
+        logarithms = float(one.present.sum(axis=1) @ np.log(self.problem.sizes))
+        return (chi2 + 2 * logarithms) * few.recording.t.size / one.t.size
 
     @property
     def values(self) -> dict[str, float]:
@@ -100,8 +100,7 @@ def minimum_at(problem: Problem, x: Array) -> Minimum:
     loose[0] |= a <= max(_LEAST * np.linalg.norm(spread[0]), b * b / _FASTEST)  # a <= 0 is no top
     meant = {"tilt": "theta0", "lean": "psi_zero", "p": "thetadot0", "q": "psidot0"}
     unknown = (meant.get(y, y) for y, z in zip(problem.names, loose, strict=True) if z)
-    chi2 = float(np.sum(problem.weighted(x[:, np.newaxis]) ** 2))
-    return Minimum(problem, x[0], spread, chi2, (*unknown,))
+    return Minimum(problem, x[0], spread, (*unknown,))
 
 
 def converged(
@@ -118,9 +117,9 @@ def converged(
     for rows in (MOST_ROWS, *[whole] * (final and whole > MOST_ROWS)):
         few = problem.thinned(rows)
         if is_given:
-            x, _ = few.solve(x, _STEPS, central=final)
+            x, _ = few.solve(x, _STEPS, central=final and rows == MOST_ROWS)
         else:
-            few, x = few.reweighted(x, floors, _STEPS // 2, central=final)
+            few, x = few.reweighted(x, floors, _STEPS // 2, central=final and rows == MOST_ROWS)
             problem = replace(problem, sizes=few.sizes)
     problem = problem if is_given else replace(problem, sizes=problem.sizes * factors)
     found = minimum_at(problem, x)

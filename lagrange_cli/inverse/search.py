@@ -24,7 +24,7 @@ from .checks import CHANCE, LARGEST, Noise, Residuals
 from .conditions import Comparison, compare, ties_of
 from .known import Known, scaled_known, time_power
 from .measured import LEAST_ROWS, Measured
-from .minimum import Minimum, converged, largest, minimum_at, slowest
+from .minimum import MOST_ROWS, Minimum, converged, largest, minimum_at, slowest
 from .nutation import nutating_outcome
 from .outcome import Outcome
 from .problem import Problem, Ties, problem_of
@@ -176,9 +176,13 @@ def _nutation(
         if best is None:
             return None
         given = {} if is_tied else known
-        found = _compared(best, given, floors, scale, turn)
+        best, all_rows = _refined(best, floors, turn), recording.t.size
+        if rival and all_rows > MOST_ROWS:
+            level = best.badness(all_rows) + _LIKELY
+            rival = rival if _refined(rival, floors, turn).badness(all_rows) < level else None
+        found = compare(best, given, scale, turn)
         if image and found.contradictions:
-            other = _compared(image, given, floors, scale, turn)
+            other = compare(_refined(image, floors, turn), given, scale, turn)
             if not other.contradictions:
                 found, image = other, best
                 rival = rival if rival and other.vector.best.differs(rival) else None
@@ -211,12 +215,12 @@ def _nutation(
     )
 
 
-def _compared(best: Minimum, known: Known, floors: Array, scale: float, turn: float) -> Comparison:
-    """Return a minimum that has converged on all rows, with known inputs."""
+def _refined(best: Minimum, floors: Array, turn: float) -> Minimum:
+    """Return a minimum that has converged on all rows, with the slowest spin."""
     if not best.is_hopeless:
         factors = _widening(best, floors)
         best = converged(best.problem, best.x[np.newaxis], floors, factors, final=True)
-    return compare(slowest(best, turn, _SURE), known, scale, turn)
+    return slowest(best, turn, _SURE)
 
 
 def _minima(
@@ -289,8 +293,10 @@ def _chosen(
     mirror image whose a or b has another size is a rival, too, unless its spin is much faster than
     one that is slow.
     """
-    slow = sorted((slowest(x, turn, _SURE) for x in minima), key=lambda x: x.badness)
-    likely = [x for x in slow if x.badness < slow[0].badness + _LIKELY]
+    slow = [slowest(x, turn, _SURE) for x in minima]
+    levels = [x.badness() for x in slow]
+    order = [i for i in np.argsort(levels).tolist() if levels[i] < min(levels) + _LIKELY]
+    likely = [slow[i] for i in order]
     ways = [[x for x in likely if x.problem.recording.is_mirrored is way] for way in (False, True)]
     plain, turned = (abs(x[0].values["r0"]) if x else math.inf for x in ways)
     if turned * _FASTER < plain:
