@@ -95,7 +95,7 @@ class _Search:
         A cause that leaves more than the limit of a trajectory has more rivals.
         """
         enough = min(_EXPLAINS * self.before.max(), limit)
-        found = [x for y in causes for x in self.combined(y) if self.error(x, _FEW) <= enough]
+        found = [x for y in causes for x in self.fitting(y, enough)]
         found = [x._replace(error=self.error(x, _SOME)) for x in found if not self.spoils(x)]
         rival = _AS_GOOD if limit <= self.limit else _COMPETES
         bound = max(rival * min((x.error for x in found), default=0.0), _ROUNDING)
@@ -108,12 +108,15 @@ class _Search:
         named = [x._replace(error=self.error(x)) for x in named]
         return [x for x in named if x.error <= enough]
 
-    def combined(self, cause: Cause) -> list[Cause]:
-        """Return a cause, or its pairs with each cause of the rates if it explains the attitude."""
+    def fitting(self, cause: Cause, enough: float) -> list[Cause]:
+        """Return a cause if it leaves little, or its pairs with causes of the rates that do."""
         attitude, rates = self.errors(cause, _FEW)
-        if self.before[0] <= self.limit or rates <= self.limit or attitude > self.limit:
+        if max(attitude, rates) <= enough:
             return [cause]
-        return [cause.with_other(x) for x in self.written if x.kinds & {"rates", "sense"}]
+        if self.before[0] <= self.limit or attitude > min(enough, self.limit):
+            return []
+        both = [cause.with_other(x) for x in self.written if x.kinds & {"rates", "sense"}]
+        return [x for x in both if self.error(x, _FEW) <= enough]
 
     def groups(self) -> Iterator[tuple[Sequence[Cause], float]]:
         """Yield groups of causes, and the greatest error that each group may leave.
@@ -250,8 +253,10 @@ def _framed(cause: Cause, exact: ExactMotion, run: Recording, align: Alignment) 
         seen = run.read_as(align=align._replace(start=False)).observed()
         turns = np.asarray(start_of(seen, exact.at(seen.t)) or (0.0, 0.0))
         phi, psi = np.degrees(rotations.within_half_turn(turns))
-        starts = {"psi": psi, "phi": phi}.items()
-        names = [" and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > 1e-3)]
+        least, starts = 1e-4 * (abs(phi) + abs(psi)), {"psi": psi, "phi": phi}.items()
+        names = [
+            " and ".join(f"{x} starts at {y:.4g} degrees" for x, y in starts if abs(y) > least)
+        ]
     if align.time and not given.time:
         names.append(f"the clock starts at {run.t[0]:.10g}")
     name = "; ".join(filter(None, [*names, cause.name]))

@@ -181,6 +181,8 @@ def test_zeros_that_count_from_the_first_row() -> None:
     for turn, zero in ((1.0, 57.3), (4.0, -130.8)):  # less than half a turn
         late = compare(TOP, T + 17, quaternion=wxyz(about_z(turn) * TURN), align=["time"])
         assert (late.cause, late.remedy) == (f"psi starts at {zero} degrees", "align=start,time")
+    tiny = compare(TOP, T, quaternion=wxyz(about_z(1e-6) * TURN), max_error=1e-8)
+    assert tiny.cause == "psi starts at 5.73e-05 degrees"
     assert compare(TOP, T + 17, quaternion=wxyz(TURN), align="time, start").verdict == "fine"
     parts = {"phi": PHI + 2, "psi": PSI - 1}
     assert (compare(TOP, T, **parts, align=["start"]).error_max or 0) < 2e-12
