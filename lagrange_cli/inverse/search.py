@@ -20,7 +20,7 @@ from ..arithmetic.types import Array
 from ..errors import DataError, arg
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, Noise, Residuals
+from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .conditions import Comparison, compare, ties_of
 from .known import Known, scaled_known, time_power
 from .measured import LEAST_ROWS, Measured
@@ -46,10 +46,6 @@ _STARTS = (12, 40)
 """Starts of the least squares, with and without a recorded tilt."""
 _STAGES = ((60, 8, 1.0, 4), (250, 20, 0.1, 3))
 """Rows, steps, promised fall of chi^2 that ends them, and ends that are kept, by stage."""
-_ROWS_PER_PERIOD = 20
-"""Rows per period to which signals are averaged for starts."""
-_LEAST_ROWS_OF_SIGNALS = 600
-"""Least number of such rows."""
 _IN_PHASE = 0.7
 """Largest rms residual of the spin, in radians, of a motion that is in phase."""
 _HOPELESS = 50.0
@@ -62,8 +58,6 @@ _SURE = 2.0
 """Standard deviations from which b has a sign, and r0 with it."""
 _FASTER = 3.0
 """Ratio of spin rates from which the slower one tells the direction of psi."""
-_LEAST_SIGMA = 1e-12
-"""Least standard deviation, in radians."""
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
 _Noise = Mapping[str, Noise]
@@ -166,7 +160,7 @@ def _nutation(
     scale, is_alone = 1 / frequency, len(recording.angles) == 1
     scaled = replace(recording, t=recording.t / scale)
     inputs, turn = scaled_known(known, scale), 2 * math.pi / scaled.frame if scaled.is_even else 0.0
-    floors = np.array([noise[x][0] / math.sqrt(12) + _LEAST_SIGMA for x in recording.channels])
+    floors = np.array([noise[x][0] / math.sqrt(12) + ROUNDING for x in recording.channels])
     ways = [scaled, scaled.mirrored][: 1 + both]
     for is_tied in [True] if is_alone else [False, True][: 1 + bool(inputs)]:
         ties = ties_of(inputs, None, spins="phi" in recording.angles) if is_tied else None
@@ -231,12 +225,10 @@ def _minima(
     Each way, psi is counted in one direction.  None is refined if no motion of a top matches.
     """
     found: list[tuple[float, Problem, Array]] = []
-    most = max(int(_ROWS_PER_PERIOD * ways[0].t[-1]), _LEAST_ROWS_OF_SIGNALS)
+    noise = ways[0].sigma or noise_of(signals_in(ways[0]), 1.0, ways[0])
+    sizes = np.maximum([noise[x] for x in ways[0].channels], floors)
     for way in ways:
-        signals = {x: y.averaged(most) for x, y in signals_in(way).items()}
-        if way is ways[0]:
-            noise = way.sigma or noise_of(signals, 1.0, way)
-            sizes = np.maximum([noise[x] for x in way.channels], floors)
+        signals = signals_in(way)
         count = _STARTS["theta" not in way.angles]
         problem, x = problem_of(way, sizes, *best_starts(way, signals, sizes, known, count), ties)
         if not len(x):

@@ -28,8 +28,8 @@ Noise exceeds it at the best of all frequencies about once in 370 times.
 """
 _TIED = 0.3
 """Loss of the log of the noise, per angle, up to which a higher frequency is preferred."""
-_ROWS_OF_NOISE = 4000
-"""Means of rows from which the noise beside harmonics is estimated."""
+_ROWS_OF_NOISE = 2000
+"""Means of rows to which harmonics of one frequency are fitted."""
 NEAR_POLE = 0.1
 """Distance from a pole, in radians, below which the axis may pass over it or begin on it."""
 _WITHOUT_LARGEST = 0.623
@@ -71,11 +71,12 @@ class Signal(NamedTuple):
         return np.asarray(factors[..., 0], float), noise
 
     def finest(self, frequency: float) -> tuple[Array, float]:
-        """Return the same at one frequency, for the order that leaves the least noise."""
-        orders = (4, 8, 16) if self.y.size > 100 else (4,) if self.y.size > 20 else (1,)
-        found = (self.harmonics(np.array([frequency]), x) for x in orders)
+        """Return the same at one frequency for the order that leaves the least noise, of a row."""
+        few = self.averaged(_ROWS_OF_NOISE)
+        orders = (4, 8, 16) if few.y.size > 100 else (4,) if few.y.size > 20 else (1,)
+        found = (few.harmonics(np.array([frequency]), x) for x in orders)
         factors, noise = min(found, key=lambda x: x[1])
-        return factors[0], float(noise[0])
+        return factors[0], float(noise[0]) * math.sqrt(self.y.size / few.y.size)
 
 
 def passes_pole(tilt: Signal) -> bool:
@@ -176,11 +177,7 @@ def noise_of(
     signals: Mapping[str, Signal], frequency: float, recording: Measured
 ) -> dict[str, float]:
     """Return the noise of each channel in radians, as harmonics of the nutation leave it."""
-    found = {}
-    for name, signal in signals.items():
-        few = signal.averaged(_ROWS_OF_NOISE)
-        in_each = int(np.isfinite(recording.angles[name]).sum()) / few.t.size
-        found[name] = few.finest(frequency)[1] * math.sqrt(in_each)
+    found = {name: x.finest(frequency)[1] for name, x in signals.items()}
     if "theta" in found:
         sine = np.sin(recording.angles["theta"])
         found["theta"] /= max(math.sqrt(float(np.nanmean(sine * sine))), 1e-3)

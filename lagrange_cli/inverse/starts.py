@@ -31,9 +31,7 @@ _POLE = 1e-4
 _ROWS = (12, 50)
 """Rows at which all starts are compared, then the best."""
 _KEPT = 1500
-"""Starts that are compared at more rows."""
-_BLOCK = 2000
-"""Starts that are compared at once."""
+"""Starts that are compared at more rows, and at once."""
 _ALIKE = 0.02
 """Difference of a and b, over 1 + their size in units of the period, of starts that are alike."""
 
@@ -135,7 +133,7 @@ def best_starts(
     states = states[states[:, 1] * sign >= 0]
     for rows in _ROWS if len(states) > _KEPT else _ROWS[1:]:
         few = recording.thinned(rows)
-        blocks = np.array_split(states, len(states) // _BLOCK + 1)
+        blocks = np.array_split(states, len(states) // _KEPT + 1)
         found = [_scored(few, x, signals.get("phi"), sizes) for x in blocks]
         noise, zeros = (np.concatenate(x, axis=-1) for x in zip(*found, strict=True))
         order = np.argsort(noise)[:_KEPT]
