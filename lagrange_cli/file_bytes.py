@@ -96,6 +96,11 @@ def decoded(content: bytes, name: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
+def extension(path: str) -> str:
+    """Return the extension of a file, in lower case and without its dot."""
+    return os.path.splitext(path)[1][1:].lower()
+
+
 def utf8_path(path: str) -> str:
     """Return the name of a file, with bytes that are not UTF-8 escaped."""
     return path.encode("utf-8", "backslashreplace").decode()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError, SomeFailedError, marked
+from ..file_bytes import extension
 from ..names import split_names
 from ..output.destination import Output, opened
 from ..output.document import Document
@@ -78,7 +79,7 @@ def fit_command(
     if len(words) != 1:
         remedy = "fit each file alone" if words else "give a file, or - for standard input"
         raise LagtopError(f"fit takes one recording, got {len(words)}: {remedy}")
-    scene_path = out.path if opt.extension(out.path) == "toml" else None
+    scene_path = out.path if extension(out.path) == "toml" else None
     if window is not None and scene_path:
         raise LagtopError("--window cannot be used with -o FILE.toml")
     opt.check_plot(plot, out.path)

@@ -8,6 +8,7 @@ from os.path import exists
 from typing import Any
 
 from ..errors import LagtopError, arg
+from ..file_bytes import extension
 from ..names import listed, suggestion
 from ..output.destination import opened
 from ..output.formats import FILMS, PICTURES
@@ -109,7 +110,7 @@ def plot_command(
         raise LagtopError(f"--dpi must be in [{LEAST_DPI:g}, {MOST_DPI:g}], got {float(dpi):g}")
     if output is not None and is_screen(output):
         raise LagtopError("a picture cannot be shown in a terminal: give -o FILE.png")
-    if opt.extension(output or "") in FILMS:
+    if extension(output or "") in FILMS:
         raise LagtopError(f"a film needs --animate: write --animate {output} instead of -o")
     fmt = "svg" if output in (None, "-") else check_picture(output, PICTURES)
     film = check_picture(animate, FILMS) if animate else ""
@@ -215,7 +216,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
         raise LagtopError("nothing to do: give -o FILE.html or --open")
     if output == "-" and (opens or is_screen("-")):
         raise LagtopError("a page on standard output needs a pipe: give -o FILE.html")
-    if opt.extension(output or "") not in {"", "html", "htm"}:
+    if extension(output or "") not in {"", "html", "htm"}:
         raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
     from ..plot.browser.view import open_page, view
 

@@ -13,6 +13,7 @@ import click
 
 from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError, SomeFailedError, arg, marked
+from ..file_bytes import extension
 from ..names import listed, split_names
 from ..output.destination import MOST_ROWS, MOST_UPRIGHT, Output, opened
 from ..output.formats import FORMATS, PICTURES, WITH_COMMAS
@@ -145,11 +146,6 @@ def _scenes_or_files(ctx: click.Context, param: click.Parameter, begun: str) -> 
 
     scenes = [name for name in scene_names() if name.startswith(begun)]
     return scenes or list(click.Path().shell_complete(ctx, param, begun))
-
-
-def extension(path: str) -> str:
-    """Return the extension of a file, in lower case and without its dot."""
-    return os.path.splitext(path)[1][1:].lower()
 
 
 def recording(function: F) -> F:

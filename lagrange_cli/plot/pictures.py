@@ -30,7 +30,6 @@ from ..solver.keys import NUMBERS, all_keys, shown_keys
 from ..solver.solve import Motion
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
-from ..top.top import Top
 from ..top.units import DEGREES, Units
 from .style import LIGHT, Look, plain
 
@@ -370,7 +369,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     (ax,), look = axes, options.look
     key = DEGREES.key(options.key or "mean_precession_rate")
     check_names("key", [key], [*WORDS, *NUMBERS])
-    grid = grid_of(motion.top, options)
+    grid = grid_of(motion, options)
     tilt = options.units.key("theta0_deg")
     (x, xs), (y, ys) = ((tilt if x == "theta0" else x, values) for x, values in grid.items())
     inputs: dict[str, Any] = dict(motion.top.inputs(radians=options.units.radians))
@@ -405,13 +404,12 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     return title
 
 
-def grid_of(top: Top, options: Options) -> dict[str, Array]:
+def grid_of(motion: Motion, options: Options) -> dict[str, Array]:
     """Return the two inputs of a map, horizontal first, with their increasing values.
 
     The spins go up to twice the threshold of the sleeping top, or beyond the top's own spin.
     """
-    threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
-    most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
+    most = max(2 * float(motion.r0_sleeping or 0), 1.25 * abs(float(motion.top.r0))) or 1.0
     x = options.x or ("r0", (np.arange(200) + 0.5) * most / 200)
     y = options.y or ("theta0", np.radians(np.linspace(1.0, 179.0, 100)) * options.units.radian)
     if x[0] == y[0]:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import LagtopError, OutOfRangeError, UnavailableError, install
+from ..file_bytes import extension
 from ..names import listed
 from ..output.terminal import one_line
 
@@ -88,8 +89,7 @@ def check_picture(path: str, formats: tuple[str, ...], report: str = "-") -> str
     Raises LagtopError for another extension, and if the `report` beside the picture has the same
     name.
     """
-    suffix = Path(path).suffix.lower()[1:]
-    if suffix not in formats:
+    if (suffix := extension(path)) not in formats:
         wanted = listed(formats, ".")
         raise LagtopError(f"the name of a picture must end in {wanted}, got {path!r}")
     if os.path.realpath(path) == os.path.realpath(report):
@@ -136,4 +136,4 @@ def drawing(look: Look) -> Iterator[None]:
 def report_bytes(path: str, draw: Callable[..., Figure], *args: object) -> bytes:
     """Return the picture that `draw` makes of some arguments, in the format of the file name."""
     with drawing(LIGHT):
-        return figure_bytes(draw(*args), Path(path).suffix[1:].lower(), 150, "lagtop", "a report")
+        return figure_bytes(draw(*args), extension(path), 150, "lagtop", "a report")
