@@ -52,8 +52,8 @@ from .sampling import is_ordinary
 from .series import near
 
 DEFAULT_ROWS = 101
-_MORE_THAN_A_DOUBLE = 20
-"""Digits of proved rows that are rounded to doubles."""
+_MORE_THAN_A_DOUBLE = 40
+"""Digits of proved rows that are rounded to doubles: no tie of two doubles is met by chance."""
 _ROWS_AT_ONCE = 64
 """Proved rows that are returned together."""
 _BALLS = {
@@ -97,51 +97,42 @@ def columns_at(
         alpha = float(found.pop("energy_constant").mid())  # 0 may be known to no digit
         return {name: near(x) for name, x in found.items()} | {"energy_constant": alpha}
 
-    def first_row(digits: int | None) -> list[float]:
-        table = ProvedTable(motion, columns, digits, units=units, wrap=wrap)
-        return [float(number.value) for number in table.row(Fraction(0))]
-
     @cache
-    def start() -> list[float]:
-        try:
-            return first_row(None)
-        except OutOfRangeError:
-            found = first_row(_MORE_THAN_A_DOUBLE)  # 0 if below all doubles, as in later rows
-            if np.isinf(found).any():
-                raise
-            return found
+    def start() -> Array:
+        return _proved(motion, np.zeros(1), columns, units, wrap=wrap)
 
     constants = decided(doubles, motion.facts.equal)
 
     def found_at(t: Array) -> Array:
-        if constants:
-            found = sampler.evaluate(t, [*chosen], wrap=wrap, **constants)
-        else:
+        if not constants:
             sampler.check(t, wrap=wrap or not WITHIN_A_TURN.isdisjoint(chosen))
-            found = _proved(motion, t, [*chosen], wrap=wrap)
+            return _proved(motion, t, columns, units, wrap=wrap)
+        found = sampler.evaluate(t, [*chosen], wrap=wrap, **constants)
         for row, column in zip(found, chosen.values(), strict=True):
             if column.unit == "angle" and not units.radians:
                 np.degrees(row, out=row)
         if (first := np.flatnonzero(t == 0)).size:
-            found[:, first] = np.array(start())[:, None]
+            found[:, first] = start()
         found += 0.0  # no -0
         return found
 
     return found_at
 
 
-def _proved(motion: Solution, t: Array, names: Sequence[str], *, wrap: bool) -> Array:
-    """Return columns of proved rows, rounded to doubles, of shape (columns, times), in radians.
+def _proved(
+    motion: Solution, t: Array, columns: Sequence[str], units: Units, *, wrap: bool
+) -> Array:
+    """Return columns of proved rows, rounded to doubles, of shape (columns, times).
 
     Numbers below all doubles are 0.  Raises OutOfRangeError for a number beyond the doubles.
     """
-    table = ProvedTable(motion, names, _MORE_THAN_A_DOUBLE, units=Units(radians=True), wrap=wrap)
-    found = np.empty((len(names), t.size))
+    table = ProvedTable(motion, columns, _MORE_THAN_A_DOUBLE, units=units, wrap=wrap)
+    found = np.empty((len(table.chosen), t.size))
     for i, time in enumerate(t.tolist()):
         found[:, i] = [float(x.value) for x in table.row(Fraction(time))]
     beyond = np.argwhere(np.isinf(found))
     if beyond.size:
-        name, time = names[beyond[0, 0]], t[beyond[0, 1]]
+        name, time = [*table.chosen][beyond[0, 0]], t[beyond[0, 1]]
         raise OutOfRangeError(f"{name} at t = {time} must be within 1.8e308 in size")
     return found
 
