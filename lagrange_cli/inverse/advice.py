@@ -1,17 +1,17 @@
-"""Advice after a failed fit: only remedies that another fit confirms."""
+"""Advice after a failed fit: only remedies that another fit confirms, while there is time."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from time import process_time
+from typing import Any
 
 import numpy as np
 
 from ..arithmetic.text import shortened
-from ..errors import DataError, LagtopError, Message, arg
+from ..errors import DataError, LagtopError, arg
 from ..recordings.frames import alignment_of, in_frames, own_frames, turn_of
 from ..recordings.misreadings import misreadings
 from ..recordings.options import Alignment
@@ -19,14 +19,19 @@ from ..top.inputs import BODY, replaced_by
 from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
-from .measured import LEAST_ROWS, Measured, frames_of, measured
+from .measured import LEAST_ROWS, Measured, measured
+from .neighbours import DECAY
 from .outcome import GOOD, STEADY, Outcome
-from .reasons import WRONG, Kind, OtherReading
-from .rows import likely_gap, with_gap
+from .reasons import NEEDS_ADVICE, Kind, Reason
+from .rows import calmness, evenly_timed, likely_gap, release, with_gap
 from .search import best_fit
-from .signals import noise_of, oscillation_in, signals_in
 
-_MEANINGS = {"up": "of the data points up", "axis": "is the figure axis"}
+_BUDGET = 5.0
+"""Seconds of the processor for a fit and its advice."""
+_LEAST = 2.0
+"""The same for the advice at least."""
+_LEAST_COST = 0.1
+"""Least time for a fit of some rows, over that for a fit of all."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
 _AS_CALM = 0.01
@@ -43,16 +48,8 @@ _SURE_GAP = 12.0
 """Fall of -2 log(likelihood) by lost rows, besides the cost of the search."""
 _LEAVES = 6.0
 """Standard deviations beyond which a row leaves the motion of the first half."""
-_HELD = 12
-"""Least number of rows before a release."""
-_RELEASED = 6.0
-"""Standard deviations that show a release."""
-_STILL = 3.5
-"""Scatter of the rows before a release, over the noise of neighbours, above which they move."""
-_BUDGET = 8.0
-"""Seconds of the processor after which no further remedy is tried."""
-_WINDOWS = (5, 10, 32, 64)
-"""Numbers of windows to try if the spin may decay."""
+_WINDOWS = (3, 5, 10, 20, 32, 64)
+"""Numbers of windows that are tried."""
 _ROWS_PER_WINDOW = 24
 """Least number of rows in such a window."""
 _FEW_PER_PERIOD = 8.0
@@ -61,10 +58,6 @@ _FEW = 0.03
 """Largest share of rows that are outliers."""
 _LEAST_TIMES = 0.25
 """Least share of times that differ."""
-_WHOLE = 1e-4
-"""Deviation of rounded times from whole units, in units."""
-_ROUNDED = 0.6
-"""Deviation of rounded times from even ones, in units."""
 _LOST = 4.0
 """Standard deviations of a loss of spin if windows are not good."""
 _STEADILY = 0.3
@@ -73,264 +66,237 @@ _CLOSER = 0.3
 """Residual of the spin in a window over that of the whole recording."""
 
 
-def hints(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
-    """Yield what makes a failed fit good, the likeliest mistakes first, and then the usual ones."""
-    body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
-    if len(recording.angles) == 1:  # of which a known start is a part
-        body = dict(known)
-    kinds = {x.kind for x in outcome.failed}
-    if kinds & {Kind.PIVOT, Kind.ROWS} or not kinds & WRONG:  # which say what to do
-        return
-    until = process_time() + _BUDGET
-    if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
-        few = f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
-        yield OtherReading(few)
-    even = evenly_timed(recording)
-    if even is not None and _is_good(even, known, outcome, also=STEADY):
-        even_rows = f"the rows are {even.frame:.6g} apart"
-        yield OtherReading(f"t is rounded: write it with more digits ({even_rows})")
-    is_far = any(x.rms > _NOISY * max(x.neighbours, x.step) for x in outcome.residuals.values())
-    yield from _readings(recording, known, body, outcome, is_far=is_far, until=until)
-    if process_time() < until and (aliased := _alias(recording, body, outcome)):
-        yield OtherReading(aliased)
-    noise, is_left = _calmness(recording), kinds != {Kind.MACHINE}  # rows may be left out
-    wrong = {t for x in outcome.residuals.values() for t in x.t[x.outliers].tolist()}
-    if is_left and 0 < len(wrong) <= _FEW * recording.t.size:
-        rest = recording.rows(~np.isin(recording.t, [*wrong]))
-        least = _OUTLYING * len(wrong) / recording.t.size
-        if noise - _calmness(rest) > least and _is_good(rest, body, outcome):
-            shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
-            yield OtherReading(f"leave out the rows at t = {shortened(shown)}")
-    free = recording.part(slice(row := release(recording), None))
-    if is_left and row and noise - _calmness(free) > _CALMER and _is_good(free, body, outcome):
-        at = recording.t_start + float(recording.t[row])
-        yield OtherReading(
-            f"the top is held until about t = {at:.4g}: leave out the rows before the release"
-        )
-    is_alone = len(recording.angles) == 1  # its known start is that of the first window
-    if not is_alone:
-        yield from _decays(recording, body, outcome, noise, until)
-    if process_time() < until:
-        yield from gap(recording, body, outcome)
-    if Kind.MACHINE in kinds:
-        return
-    start = [x for x in ("theta0", "psidot0") if x in known]
-    short = ", and that the recording lasts for a period of the nutation"
-    is_early = process_time() < until
-    begins = _beginning(recording, body, outcome) if is_early else ""
-    known_ones = "no known misreading" if is_early else "none of the misreadings that were tried"
-    yield (
-        f"{known_ones} explains it{begins}: check {', '.join([*start, 'columns'])}, units "
-        f"and axes{short * (not outcome.inputs)}"
-    )
+class Advice:
+    """The search for what makes a failed fit good, the likeliest mistakes first.
 
-
-def gap(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
-    """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
-    if (found := likely_gap(recording)) is None:
-        return
-    row, count = found
-    other = _tried(with_gap(recording, row, count), known)
-    if other is None or other.verdict != GOOD:
-        return
-    gain = float(outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
-    if gain > _SURE_GAP:
-        at = recording.t_start + float(recording.t[row])
-        rows = "1 row is" if count == 1 else f"{count} rows are"
-        yield OtherReading(f"{rows} lost before t = {at:.6g}: write the times of the frames")
-
-
-def _beginning(recording: Measured, known: Known, outcome: Outcome) -> str:
-    """Return where the recording leaves the motion of its first half, in words, or empty."""
-    half = recording.part(slice(0, recording.t.size // 2))
-    found = _tried(half, known) if half.t.size >= 2 * LEAST_ROWS else None
-    if found is None or found.verdict != GOOD or outcome.inputs is None:
-        return ""
-    rests = recording.residuals(*found.motion(recording.t))
-    sizes = np.array([[x.rms] for x in found.residuals.values()])
-    away = np.nanmax(np.abs(rests) / sizes, axis=0) > _LEAVES
-    kept = np.convolve(away, np.ones(3), "valid") == 3
-    if not kept.any():
-        return ""
-    at = recording.t_start + float(recording.t[np.argmax(kept)])
-    return f"; the residuals begin at t = {at:.4g}"
-
-
-def _is_good(recording: Measured, known: Known, outcome: Outcome, also: str = GOOD) -> bool:
-    """Return whether a fit is good, and needs no faster spin or reversed angle.
-
-    It must leave smaller residuals in most rows than the fit of the recording as it was read.
+    The fit took some `seconds`.
     """
-    found = _tried(recording, known)
-    if found is None or found.verdict not in {GOOD, also}:
-        return False
-    is_better = found.noisiness < outcome.noisiness + _AS_NOISY * len(found.residuals)
-    return is_better and not found.recording.is_mirrored and found.is_spin_slow
 
+    def __init__(self, recording: Measured, known: Known, outcome: Outcome, seconds: float) -> None:
+        self.recording, self.known, self.outcome = recording, known, outcome
+        self.kinds = {x.kind for x in outcome.failed}
+        self.body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
+        if len(recording.angles) == 1:  # of which a known start is a part
+            self.body = dict(known)
+        self.cost, self.is_early = seconds, True
+        self.until = process_time() + max(_BUDGET - seconds, _LEAST)
 
-def _tried(
-    recording: Measured, known: Known, chance: float = CHANCE, *, frequency: float | None = None
-) -> Outcome | None:
-    """Return a fit, or None if the recording does not determine a top without other inputs."""
-    try:
-        return best_fit(recording, known, chance=chance, frequency=frequency)
-    except DataError:
-        return None
+    def reasons(self) -> Iterator[Reason]:
+        """Yield advice, the best first."""
+        if self.kinds & {Kind.PIVOT, Kind.ROWS} or not self.kinds & NEEDS_ADVICE:
+            return  # they say what to do
+        if DECAY in self.outcome.shown:
+            yield from self._windows()
+        for texts in (self._times, self._meanings, self._frames, self._aliased, self._parts):
+            yield from (Reason(Kind.READING, x) for x in texts())
+        if Kind.MACHINE not in self.kinds:
+            yield from self._windows()
+        yield from (Reason(Kind.READING, x) for x in self.gap())
+        if Kind.MACHINE not in self.kinds:
+            yield from self._last()
 
-
-def evenly_timed(recording: Measured) -> Measured | None:
-    """Return a recording at even times, if its times are these after rounding to some digits."""
-    t = recording.t_start + recording.t
-    sizes = (10.0**-k for k in range(9))
-    unit = next((x for x in sizes if np.abs(t / x - np.round(t / x)).max() < _WHOLE), 0.0)
-    frames = np.arange(t.size, dtype=float)
-    for _ in range(4):
-        step, start = np.polyfit(frames, recording.t, 1)
-        off = np.abs(recording.t - start - step * frames)
-        if unit / 10 < np.median(off) and off.max() < _ROUNDED * unit:
-            return replace(recording, t=step * frames)
-        frames = frames_of(recording.t, step)  # some are missing
-    return None
-
-
-def _readings(
-    recording: Measured,
-    known: Known,
-    body: Known,
-    outcome: Outcome,
-    *,
-    is_far: bool,
-    until: float,
-) -> Iterator[str]:
-    """Yield the misreadings without which the fit is good, tried `until` some processor time.
-
-    A reading is worth a fit if its nutation leaves no more noise beside harmonics.
-    """
-    calm = _calmness(recording.thinned(_ROWS)) + _AS_CALM
-    is_angles = recording.kind == "angles"
-    for row in misreadings(recording.source) if is_far or not is_angles else ():
-        other = None
-        if process_time() > until:
-            return
-        if row.kind in {"attitude", "frame"}:
-            with suppress(DataError):  # such as a tilt beyond 180 degrees
-                other = measured(row.undo(recording.source))
-        if other is None or not (is_angles or _calmness(other.thinned(_ROWS)) < calm):
-            continue
-        if _is_good(other, known if is_angles else body, outcome):
-            yield OtherReading(f"{row.name}: {row.remedy}")
-    if not is_angles and recording.source.align.frame == Alignment().frame:
-        yield from _frames(recording, body, outcome)
-
-
-def _frames(recording: Measured, known: Known, outcome: Outcome) -> Iterator[str]:
-    """Yield the frames in which a top explains the motion, or the opposite ones."""
-    source = recording.source
-    up, body = own_frames(source.observed()) or (np.eye(3), np.eye(3))
-    for space in (up, up * [1, -1, -1]):
-        align = alignment_of((space, body), left=False)
-        other = source.read_as(align=align) if align else in_frames(source, space, body)
-        if align == Alignment() or not _is_good(measured(other), known, outcome):
-            continue
-        if align is None:
-            yield OtherReading(f"space is turned by {turn_of(space)}, the body by {turn_of(body)}")
-            continue
-        named = {"up": align.up, "axis": align.axis}
-        words = [f"the {x} axis {_MEANINGS[key]}" for key, x in named.items() if x != "z"]
-        opposite = ", or the marker is opposite to the centre of mass"
-        is_opposite = align.up == "-z" and recording.kind == "axis"
-        where = f"{' and '.join(words)}{opposite * is_opposite}: use {arg('align', align)}"
-        aliased = _alias(recording, known, outcome)
-        yield OtherReading(f"{where}{'; or ' * bool(aliased)}{aliased}")
-
-
-def _alias(recording: Measured, known: Known, outcome: Outcome) -> str:
-    """Return in words the faster nutation that explains the recording, or empty.
-
-    If rows are few, it may look like the nutation in an opposite frame.
-    """
-    if not recording.is_even or outcome.frequency * recording.frame < 1 / _FEW_PER_PERIOD:
-        return ""
-    faster = _tried(recording, known, frequency=1 / recording.frame - outcome.frequency)
-    if faster is None or faster.verdict != GOOD:
-        return ""
-    rows = 1 / (faster.frequency * recording.frame)
-    return f"the nutation is aliased, with {rows:.3g} rows per period: record more than two"
-
-
-def _calmness(recording: Measured) -> float:
-    """Return the logarithm of the noise that harmonics of one frequency leave, over the angles."""
-    signals = signals_in(recording)
-    frequency, _ = oscillation_in(signals)
-    return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
-
-
-def release(recording: Measured) -> int:
-    """Return the row in which a top that was held begins to move, or 0.
-
-    The first rows of a top that is held differ only by noise.
-    """
-    rows = []
-    for name, values in recording.angles.items():
-        seen = np.flatnonzero(np.isfinite(values))
-        if name == "phi" or seen.size <= _HELD:
-            continue
-        y = values[seen] if name == "theta" else np.unwrap(values[seen])
-        noise = max(float(np.std(y[:_HELD])), 1e-9) * _RELEASED
-        moves = np.flatnonzero(np.abs(y - y[:_HELD].mean()) > noise)
-        held = y[: moves[0]] if moves.size else y
-        if np.std(held) > _STILL * math.sqrt(np.mean(np.diff(held) ** 2) / 2) + 1e-9:
-            return 0
-        rows.append(int(seen[moves[0]]) if moves.size else values.size)
-    row = min(rows, default=0)
-    return row if _HELD < row < recording.t.size - 2 * _HELD else 0
-
-
-def _decays(
-    recording: Measured, known: Known, outcome: Outcome, noise: float, until: float
-) -> Iterator[str]:
-    """Yield the number of windows that are all good and show a decay, or a decay within windows."""
-    counts, lost = [x for x in _WINDOWS if x * _ROWS_PER_WINDOW <= recording.t.size], ""
-    for count in counts:
-        if process_time() > until:
-            break
+    def _fit(self, recording: Measured, known: Known | None = None, **how: Any) -> Outcome | None:
+        """Return a fit, None if there is no time, or if it needs other inputs."""
+        begun, size = process_time(), max(recording.t.size / self.recording.t.size, _LEAST_COST)
+        if begun + self.cost * size > self.until:
+            self.is_early = False
+            return None
         try:
-            parts, fits = recording.windows(count), list[Outcome]()
-        except LagtopError:  # of rows that are not even
+            return best_fit(recording, self.body if known is None else known, **how)
+        except DataError:
+            return None
+        finally:
+            self.cost = (self.cost + (process_time() - begun) / size) / 2
+
+    def _is_good(self, recording: Measured, known: Known | None = None, also: str = GOOD) -> bool:
+        """Return whether a fit is good, and needs no faster spin or reversed angle.
+
+        It must leave smaller residuals in most rows than the fit of the recording as it was read.
+        """
+        found = self._fit(recording, known)
+        if found is None or found.verdict not in {GOOD, also}:
+            return False
+        most = self.outcome.noisiness + _AS_NOISY * len(found.residuals)
+        return found.noisiness < most and not found.recording.is_mirrored and found.is_spin_slow
+
+    def _times(self) -> Iterator[str]:
+        """Yield that times have too few digits."""
+        recording = self.recording
+        if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
+            yield f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
+        even = evenly_timed(recording)
+        if even is not None and self._is_good(even, self.known, also=STEADY):
+            apart = f"the rows are {even.frame:.6g} apart"
+            yield f"t is rounded: write it with more digits ({apart})"
+
+    def _meanings(self) -> Iterator[str]:
+        """Yield the misreadings without which the fit is good.
+
+        A reading of an axis is worth a fit if harmonics leave no more noise.
+        """
+        recording, is_angles = self.recording, self.recording.kind == "angles"
+        rests = self.outcome.residuals.values()
+        if is_angles and all(x.rms <= _NOISY * max(x.neighbours, x.step) for x in rests):
             return
-        three = [parts.pop(i) for i in (-1, count // 2, 0)][::-1]
-        if noise - sum(map(_calmness, three)) / len(three) < _CALMER:
-            continue
-        for part in three:
-            found = _tried(part, known, CHANCE / count)
-            if found is None:
-                return
-            fits.append(found)
-            if found.verdict != GOOD and (count != counts[-1] or not _is_closer(found, outcome)):
-                break
-        else:
-            lost = _loss(fits) or lost
-        if all(x.verdict == GOOD for x in fits):
-            decay = decay_of(fits)
-            if decay is None or decay.time is None:
-                return
-            others = (_tried(part, known, CHANCE / count) for part in parts)
-            if all(found is not None and found.verdict == GOOD for found in others):
-                yield Message(f"the spin decays: use {arg('window', count)}")
-                return
-    if lost:
-        yield f"the spin decays: {lost}, and within each window"
+        calm = calmness(recording.thinned(_ROWS)) + _AS_CALM
+        for row in misreadings(recording.source):
+            other = None
+            if row.kind in {"attitude", "frame"}:
+                with suppress(DataError):  # such as a tilt beyond 180 degrees
+                    other = measured(row.undo(recording.source))
+            if other is None or not (is_angles or calmness(other.thinned(_ROWS)) < calm):
+                continue
+            if self._is_good(other, self.known if is_angles else self.body):
+                yield f"{row.name}: {row.remedy}"
 
+    def _frames(self) -> Iterator[str]:
+        """Yield the frames in which a top explains the motion, or the opposite ones."""
+        source = self.recording.source
+        if self.recording.kind == "angles" or source.align.frame != Alignment().frame:
+            return
+        meanings = {"up": "of the data points up", "axis": "is the figure axis"}
+        up, body = own_frames(source.observed()) or (np.eye(3), np.eye(3))
+        for space in (up, up * [1, -1, -1]):
+            align = alignment_of((space, body), left=False)
+            other = source.read_as(align=align) if align else in_frames(source, space, body)
+            if align == Alignment() or not self._is_good(measured(other)):
+                continue
+            if align is None:
+                yield f"space is turned by {turn_of(space)}, the body by {turn_of(body)}"
+                continue
+            named = {"up": align.up, "axis": align.axis}
+            words = " and ".join(
+                f"the {x} axis {meanings[y]}" for y, x in named.items() if x != "z"
+            )
+            if align.up == "-z" and self.recording.kind == "axis":
+                words += ", or the marker is opposite to the centre of mass"
+            aliased = "".join(f"; or {x}" for x in self._aliased())
+            yield f"{words}: use {arg('align', align)}{aliased}"
 
-def _is_closer(part: Outcome, whole: Outcome) -> bool:
-    """Return whether a window shows the spin much better than the whole recording.
+    def _aliased(self) -> Iterator[str]:
+        """Yield the faster nutation that explains the recording.
 
-    If the spin is not recorded, the precession shows it.
-    """
-    spin = whole.recording.spin_channel
-    key, names = ("r0", [spin]) if spin in whole.residuals else ("b", ["psi", "across"])
-    rms = [(part.residuals[x].rms, whole.residuals[x].rms) for x in names if x in whole.residuals]
-    return key in part.numbers and all(x <= _CLOSER * y for x, y in rms)
+        If rows are few, it may look like the nutation in an opposite frame.
+        """
+        recording, frequency = self.recording, self.outcome.frequency
+        if not recording.is_even or frequency * recording.frame < 1 / _FEW_PER_PERIOD:
+            return
+        faster = self._fit(recording, frequency=1 / recording.frame - frequency)
+        if faster is not None and faster.verdict == GOOD:
+            rows = 1 / (faster.frequency * recording.frame)
+            yield f"the nutation is aliased, with {rows:.3g} rows per period: record more than two"
+
+    def _parts(self) -> Iterator[str]:
+        """Yield the rows without which the fit is good: outliers, and those before a release."""
+        recording, noise = self.recording, calmness(self.recording)
+        if self.kinds == {Kind.MACHINE}:
+            return
+        rests = self.outcome.residuals.values()
+        wrong = {t for x in rests for t in x.t[x.outliers].tolist()}
+        if 0 < len(wrong) <= _FEW * recording.t.size:
+            rest = recording.rows(~np.isin(recording.t, [*wrong]))
+            least = _OUTLYING * len(wrong) / recording.t.size
+            if noise - calmness(rest) > least and self._is_good(rest):
+                shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
+                yield f"leave out the rows at t = {shortened(shown)}"
+        row = release(recording)
+        free = recording.part(slice(row, None))
+        if row and noise - calmness(free) > _CALMER and self._is_good(free):
+            held = f"the top is held until about t = {free.t_start:.4g}"
+            yield f"{held}: leave out the rows before the release"
+
+    def _windows(self) -> Iterator[Reason]:
+        """Yield the number of windows that are all good and show a decay, or a decay within them.
+
+        In a window, a decay of the phase is as many times less significant as the window is shorter
+        to the power of 2.5.
+        """
+        recording, lost, least = self.recording, "", 0.0
+        if len(recording.angles) == 1:  # its known start is that of the first window
+            return
+        if decay := self.outcome.shown.get(DECAY):
+            least = (decay.size / decay.std / 2) ** 0.4
+        most = recording.t.size / _ROWS_PER_WINDOW
+        tried = [x for x in _WINDOWS if least <= x <= most]
+        noise = calmness(recording)
+        for count in tried:
+            try:
+                parts = recording.windows(count)
+            except LagtopError:  # of rows that are not even
+                return
+            three = [parts.pop(i) for i in (-1, count // 2, 0)][::-1]
+            if not decay and noise - sum(map(calmness, three)) / 3 < _CALMER:
+                continue
+            fits = list[Outcome]()
+            for part in three:
+                found = self._fit(part, chance=CHANCE / count)
+                if found is None:
+                    break
+                fits.append(found)
+                if found.verdict != GOOD and not (count == tried[-1] and self._is_closer(found)):
+                    break
+            else:
+                lost = _loss(fits) or lost
+                has_decay = (seen := decay_of(fits)) is not None and seen.time is not None
+                others = (self._fit(x, chance=CHANCE / count) for x in parts)
+                if has_decay and all(x is not None and x.verdict == GOOD for x in others):
+                    yield Reason(Kind.WINDOWS, f"the spin decays: use {arg('window', count)}")
+                    return
+        if lost:
+            yield Reason(Kind.WINDOWS, f"the spin decays: {lost}, and within each window")
+
+    def _is_closer(self, part: Outcome) -> bool:
+        """Return whether a window shows the spin much better than the whole recording.
+
+        If the spin is not recorded, the precession shows it.
+        """
+        whole = self.outcome
+        spin = whole.recording.spin_channel
+        key, names = ("r0", [spin]) if spin in whole.residuals else ("b", ["psi", "across"])
+        seen = [x for x in names if x in whole.residuals]
+        rms = [(part.residuals[x].rms, whole.residuals[x].rms) for x in seen]
+        return key in part.numbers and all(x <= _CLOSER * y for x, y in rms)
+
+    def gap(self) -> Iterator[str]:
+        """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
+        recording = self.recording
+        if (found := likely_gap(recording)) is None:
+            return
+        row, count = found
+        other = self._fit(with_gap(recording, row, count))
+        if other is None or other.verdict != GOOD:
+            return
+        gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
+        if gain > _SURE_GAP:
+            at = recording.t_start + float(recording.t[row])
+            rows = "1 row is" if count == 1 else f"{count} rows are"
+            yield f"{rows} lost before t = {at:.6g}: write the times of the frames"
+
+    def _last(self) -> Iterator[Reason]:
+        """Yield where the recording leaves the motion of its first half, and what to check."""
+        recording, begins = self.recording, ""
+        half = recording.part(slice(0, recording.t.size // 2))
+        found = self._fit(half) if half.t.size >= 2 * LEAST_ROWS else None
+        if found is not None and found.verdict == GOOD:
+            rests = recording.residuals(*found.motion(recording.t))
+            sizes = np.array([[x.rms] for x in found.residuals.values()])
+            away = np.nanmax(np.abs(rests) / sizes, axis=0) > _LEAVES
+            kept = np.convolve(away, np.ones(3), "valid") == 3
+            row = int(np.argmax(kept))
+            rest = recording.part(slice(row, None))
+            if row and rest.t.size >= 2 * LEAST_ROWS and self._is_good(rest):
+                again = f"another motion begins at t = {rest.t_start:.4g}"
+                parts = f"fit both parts with {arg('t_max')} and {arg('t_min')}"
+                yield Reason(Kind.READING, f"{again}: {parts}")
+            begins = f"; the residuals begin at t = {rest.t_start:.4g}" * bool(kept.any())
+        known = (
+            "no known misreading" if self.is_early else "none of the misreadings that were tried"
+        )
+        start = [x for x in ("theta0", "psidot0") if x in self.known]
+        short = ", and that the recording lasts for a period of the nutation"
+        check = f"check {', '.join([*start, 'columns'])}, units and axes"
+        text = f"{known} explains it{begins}: {check}{short * (not self.outcome.inputs)}"
+        yield Reason(Kind.CHECK, text)
 
 
 def _loss(fits: Sequence[Outcome]) -> str:

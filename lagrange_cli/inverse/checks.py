@@ -25,6 +25,8 @@ LARGEST = 0.2
 """Largest rms residual of a channel in radians."""
 _OF_RANGE = 1 / 3
 """Largest rms residual over the range of the data."""
+_AS_NOISY = 1.5
+"""Rms residual over the noise of neighbours that is noise, however small the range is."""
 _ABOVE = 3.0
 """Largest rms residual over the noise of neighbours."""
 _SMOOTHED = 2.0
@@ -75,7 +77,8 @@ class Residuals:
     @property
     def is_large(self) -> bool:
         """Whether the residuals are so large that the motion describes nothing."""
-        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, 2 * self.step, ROUNDING))
+        noise = _AS_NOISY * self.neighbours if math.isfinite(self.neighbours) else 0.0
+        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, noise, 2 * self.step, ROUNDING))
 
     @cached_property
     def rms(self) -> float:

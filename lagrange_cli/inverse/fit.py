@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import islice
+from time import process_time
 from types import NoneType
 from typing import Any, Unpack
 
@@ -15,12 +17,16 @@ from ..recordings.recording import Given, recording_of
 from ..top.given import gather
 from ..top.units import DEGREES, Units
 from ..top.values import parse_value, value_of
-from .advice import gap, hints
+from .advice import Advice
 from .known import Known, known_inputs
 from .measured import Measured, measured
 from .outcome import Outcome
 from .reasons import Kind, Reason
+from .rows import frequency_of_parts
 from .search import best_fit
+
+_OTHER = 0.15
+"""Difference of the logarithms of two frequencies that are not the same."""
 
 
 def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> Outcome:
@@ -28,12 +34,19 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
 
     Raises DataError for a recording that cannot be fitted.
     """
+    begun = process_time()
     outcome = best_fit(recording, known, units=units)
+    if {Kind.OPEN, Kind.MOTION} & {x.kind for x in outcome.failed}:
+        frequency = frequency_of_parts(recording)
+        if abs(math.log(frequency / outcome.frequency)) > _OTHER:
+            other = best_fit(recording, known, units=units, frequency=frequency)
+            outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
+    advice = Advice(recording, known, outcome, process_time() - begun)
+    found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
-        is_late = outcome.neighbours is not None and outcome.neighbours.is_late
-        lost = [Reason(Kind.ROWS, x) for x in gap(recording, known, outcome)] if is_late else []
-        return replace(outcome, reasons=lost) if lost else outcome
-    return replace(outcome, hints=[*islice(hints(recording, known, outcome), 1)])
+        is_late = outcome.neighbours is not None and outcome.neighbours.late is not None
+        found = (Reason(Kind.ROWS, x) for x in (advice.gap() if is_late else ()))
+    return replace(outcome, reasons=[*outcome.reasons, *found])
 
 
 def fit(

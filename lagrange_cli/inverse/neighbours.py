@@ -2,15 +2,17 @@
 
 Each is a template, the change of the motion by a small one.  The templates and the residuals are
 projected off the changes by the parameters of the top.  The rest of a template gives its size; the
-part that is projected off is what it does to the numbers of the fit.
+part that is projected off is what it does to the numbers of the fit.  If the recording shows some
+neighbours, forces along the motion that each of the likeliest has changed decide the name.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Legendre
@@ -26,39 +28,45 @@ from .variations import Variations
 SMALL = 0.01
 """Size of a neighbour that counts in the model error if the recording does not show it."""
 _SURE = 4.0
-"""Standard deviations of a neighbour that is shown."""
-_SURE_OF_STEP = 3.5
-"""The same of a step at a known row; a search among rows takes more."""
+"""Standard deviations of a neighbour that is shown; more if it is searched at many places."""
 _MOVED = 1.0
 """Standard deviations by which a neighbour that is shown moves a number of the fit at least."""
 _ALIKE = 6.0
 """Difference of chi^2 below which two neighbours explain a recording equally well."""
-_CLOCK = "the clock"
-"""The name of a step of the clock."""
 _MAYBE = 2.5
-"""Standard deviations of a step of the clock from which a fit with lost rows is worth its time."""
-_SEARCHED = 10.0
-"""Cost of the search for the row of a step, in chi^2."""
+"""Standard deviations from which rows may be lost, so that a fit with a gap is worth its time."""
 _UNSEEN = 2.0
 """Standard deviations of a neighbour that may be there beside its size."""
+_EDGE = 6
+"""Rows at either end that show no step."""
+_EXPLAINS = 4.0
+"""Fall of chi^2, as a factor, by a neighbour that explains a motion far from that of any top."""
 _LINES = 5
 """Neighbours that a line lists."""
-_LARGEST = 1.0
+_FOLLOWED = 6
+"""Neighbours among which the name is chosen."""
+_STEPS = 2
+"""How often templates are computed again, along the motion that they change."""
+_LARGEST = 0.5
 """Size from which a change is not a small one, so that its template is wrong."""
 _WIDEST = 1 / (2 * math.pi**2)
 """The same of the square of a filter's width over the period: no nutation is left."""
-_POINTS = 48
+_POINTS = 96
 """Points of the grid in a period of the nutation."""
 _PER_TURN = 10
 """Points of the grid in a turn of the spin."""
 _MOST_POINTS = 9000
 """Points of the grid at most."""
+_MOST_TRIED = 400_000
+"""Spins times points up to which a spin that is not recorded is searched."""
 _POLE = 0.03
 """Least sin(theta) of a motion whose changes by forces are computed."""
 _DEPENDENT = 1e-7
 """Ratio of singular values below which parameters are not determined."""
-NUMBERS = ("a", "b", "theta0", "thetadot0", "psidot0", "r0")
-"""The parameters of the motion that neighbours move."""
+LOST = "lost rows"
+"""The name of a step of the clock."""
+DECAY = "a decay of the spin"
+"""The name of friction."""
 
 
 class Neighbour(NamedTuple):
@@ -73,6 +81,10 @@ class Neighbour(NamedTuple):
     """Whether a negative size is impossible."""
     is_square: bool = False
     """Whether the changes are those of a square of the size."""
+    row: int = 0
+    """The row from which it acts."""
+    tried: int = 1
+    """The number of places or rates among which it was searched."""
 
 
 def machines(x: Variations) -> Iterator[Neighbour]:
@@ -88,7 +100,7 @@ def machines(x: Variations) -> Iterator[Neighbour]:
     yield Neighbour("a ring that does not spin", "with {} % of A", [ring], True)
     drag = push(phi=-x.b + 0 * s, psi=-x.b * c) / x.length
     mean = f"{over} (b is its mean)" if math.isnan(x.ratio) else over
-    yield Neighbour("a decay of the spin", mean, [drag], True)
+    yield Neighbour(DECAY, mean, [drag], True)
     damped = push(psi=-turns) / x.length
     yield Neighbour("a vertical bearing that damps", over, [damped], True)
     damped = push(theta=-nods) / x.length
@@ -99,9 +111,14 @@ def machines(x: Variations) -> Iterator[Neighbour]:
     around = axis[0] * force[1] - axis[1] * force[0]
     soft = push(theta=np.sum(force * down, axis=0), psi=around)
     yield Neighbour("a pivot that yields", "with (m s^2/A)(m/k)(2 pi/T)^2 = {} %", [soft], True)
-    if math.isnan(x.ratio):
-        return
-    sine, cosine, half = np.sin(x.angles[1]), np.cos(x.angles[1]), -x.a / 2
+    if not math.isnan(x.ratio):
+        yield from unround(x, x.angles[1])
+
+
+def unround(x: Variations, phi: Array) -> Iterator[Neighbour]:
+    """Yield bodies that are not round, for spin angles of shape (..., times)."""
+    (nods, _, turns), s, c, push = x.rates, x.sine, x.cosine, x.pushed
+    sine, cosine, half = np.sin(phi), np.cos(phi), -x.a / 2
     beside = [push(theta=half * c * sine, phi=half * s * cosine)]
     beside += [push(theta=half * c * cosine, phi=-half * s * sine)]
     yield Neighbour("a centre of mass off the axis", "by {} % of s", beside)
@@ -115,134 +132,311 @@ def machines(x: Variations) -> Iterator[Neighbour]:
     yield Neighbour("equatorial moments that differ", "by {} %", unlike)
 
 
-def misread(x: Variations, kind: str, seen: Sequence[str]) -> Iterator[Neighbour]:
-    """Yield faults of the clock, the camera and the angles of a kind of recording."""
-    (_, phi, psi), s, c, only = x.angles, x.sine, x.cosine, x.only
+def misread(x: Variations, one: Measured) -> Iterator[Neighbour]:
+    """Yield faults of the clock, the camera and the angles of a recording."""
+    (_, phi, psi), s, c, only, seen = x.angles, x.sine, x.cosine, x.only, one.angles
+    axis, nodes, down = x.frame
+    is_angles = one.kind == "angles"
+
+    def turned(by: Array) -> Array:
+        """Return the change of the angles by changes of the axis, shape (3, times)."""
+        turn = np.sum(by * nodes, axis=0) / s
+        return only(theta=np.sum(by * down, axis=0), psi=turn, phi=-c * turn)
+
     drift = x.rates * x.t**2 / (2 * x.length)
     yield Neighbour("a clock whose rate changes", "by {} %", [drift])
     place = 2 * x.t / x.length - 1
     wander = [x.rates * Legendre.basis(n)(place) * x.length / 4 for n in (3, 4, 5)]
     yield Neighbour("a clock whose rate wanders", "by {} %", wander)
     if "psi" in seen:
-        mean = np.polyfit(x.t, psi, 1)[0]
-        turned = [only(psi=mean * x.t)]
-        yield Neighbour("a camera that turns", "with {} % of the precession", turned)
+        mean = only(psi=np.polyfit(x.t, psi, 1)[0] * x.t)
+        yield Neighbour("a camera that turns", "with {} % of the precession", [mean])
     along, beside = np.cos(psi), np.sin(psi)
-    if {"theta", "psi"} <= {*seen}:
+    if {"theta", "psi"} <= seen.keys():
         leaning = [only(theta=along, phi=beside / s, psi=-beside * c / s)]
         leaning += [only(theta=beside, phi=-along / s, psi=along * c / s)]
         yield Neighbour("a tilted vertical of the data", "by {} % of a radian", leaning)
-    if {"theta", "phi", "psi"} <= {*seen}:
+    if {"theta", "phi", "psi"} <= seen.keys():
         along, beside = np.cos(phi), np.sin(phi)
         askew = [only(theta=along, phi=-c * beside / s, psi=beside / s)]
         askew += [only(theta=-beside, phi=-c * along / s, psi=along / s)]
         yield Neighbour("a misaligned figure axis of the data", "by {} % of a radian", askew)
-    smooth = x.slope(x.angles, 2) / 2
-    if kind != "angles":
-        axis, nodes, down = x.frame
-        bent = x.slope(axis, 2) / 2
-        turned_by = np.sum(bent * nodes, axis=0) / s
-        smooth = only(theta=np.sum(bent * down, axis=0), psi=turned_by, phi=-c * turned_by)
+    if one.position is not None:
+        shifted = [turned(y[:, np.newaxis] - axis * (y @ axis)) for y in np.eye(3)]
+        yield Neighbour("an origin beside the pivot", "by {} % of the distance", shifted)
+    smooth = x.slope(x.angles, 2) / 2 if is_angles else turned(x.slope(axis, 2) / 2)
     words = "a filter", "with a standard deviation of {} % of a period"
     yield Neighbour(*words, [smooth], True, True)
-    if kind == "angles" and "theta" in seen:
+    if is_angles and "theta" in seen:
         yield Neighbour("a wrong zero of theta", "by {} % of a radian", [only(theta=1.0)])
-    if kind == "angles" and "psi" in seen:
+    if is_angles and "psi" in seen:
         yield Neighbour("a wrong scale of psi", "by {} %", [only(psi=psi)])
 
 
 class Finding(NamedTuple):
     """What a recording shows of a neighbour of the fitted top."""
 
-    text: str
-    """Its name with its size."""
-    name: str
-    is_possible: bool
+    one: Neighbour
+    motion: Variations
+    """The motion along which the template was computed."""
+    moved: Array
+    """Changes of the parameters with it, in the order of `Variations.by_parameters`."""
+    sizes: Array
+    """Its size in each direction."""
     size: float
     std: float
+    is_possible: bool
+    """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
     sigmas: float
     """The size in standard deviations, or the same probability in several directions."""
     gain: float
     """The fall of chi^2."""
+    chi2: float
+    """Chi^2 with it, for white noise."""
+    noise: float
+    """The mean square of its residuals, wider if they correlate."""
     effect: float
     """How far it moves a number of the fit at most, in standard deviations of the fit."""
     shifts: Mapping[str, Array]
-    """Changes of NUMBERS by the size that may be there unseen, for each of its directions."""
-
+    """Relative changes of numbers by the size that may be there unseen, in each direction."""
     is_untested: bool
     """Whether the recording could not show one of the size SMALL."""
+    where: str
+    """The time or the spin at which it was found, in words, or empty."""
 
     @property
     def is_shown(self) -> bool:
         """Whether it is there and matters."""
-        return self.is_possible and self.sigmas >= _SURE and self.effect >= _MOVED
+        least = math.sqrt(_SURE**2 + 2 * math.log(self.one.tried))
+        return self.is_possible and self.sigmas >= least and self.effect >= _MOVED
+
+    @property
+    def directions(self) -> int:
+        """The number of its parameters."""
+        return len(self.one.changes) + (self.one.tried > 1)
+
+    @property
+    def text(self) -> str:
+        """Its name with its size."""
+        if self.one.name == LOST:
+            count = round(abs(self.size))
+            rows = "1 row is" if count == 1 else f"{count} rows are"
+            how = "doubled at" if self.size < 0 else "lost before"
+            return f"{rows} {how}{self.where}"
+        root = math.sqrt(abs(self.size)) + 1e-300
+        pair = (root, self.std / 2 / root) if self.one.is_square else (self.size, self.std)
+        unit = 180 / math.pi if "degrees" in self.one.amount else 100.0
+        shown = uncertain_text(*(unit * x for x in pair))
+        return f"{self.one.name} {self.one.amount.format(shown)}{self.where}"
 
 
 class Neighbours:
-    """The neighbours of a fitted top, against its residuals over their standard deviations."""
+    """The neighbours of a fitted top, against its residuals over their standard deviations.
+
+    `rest` are the residuals in radians, shape (channels, times).  The fit `is_failing` if they are
+    not those of a top.  `smoothing` is the square of the
+    width of a filter, over the period, if one made the noise smooth.
+    """
 
     def __init__(
         self,
         recording: Measured,
         residuals: Mapping[str, Residuals],
-        variations: Variations,
+        motion: Variations,
         rest: Array,
         period: float,
         *,
-        smoothing: float,
+        smoothing: float = 0.0,
+        is_failing: bool = False,
     ) -> None:
-        """Project the residuals off the changes by the parameters.
-
-        `rest` are the residuals in radians, shape (channels, times).
-        """
-        self.recording, self.residuals, self.motion = recording, residuals, variations
-        self.period, self.smoothing, one = period, smoothing, recording
-        pairs = residuals.items()
-        sizes = [one.sigma.get(x) or max(y.rms, y.step / math.sqrt(12)) for x, y in pairs]
-        self.sizes = np.maximum(sizes, ROUNDING)[:, np.newaxis]
+        self.recording, self.residuals, self.motion = recording, residuals, motion
+        self.period, self.smoothing, self.is_failing = period, smoothing, is_failing
+        self.rows, one = recording.t / period, recording
+        noise = [
+            one.sigma.get(x)
+            or max(min(y.rms, y.neighbours if is_failing else math.inf), y.step / math.sqrt(12))
+            for x, y in residuals.items()
+        ]
+        self.sizes = np.maximum(noise, ROUNDING)[:, np.newaxis]
         self.least = float(np.mean((ROUNDING / self.sizes) ** 2))
         spins = "phi" in one.angles
-        kept = [0, 1, 2, 3, 4, *[5, 6] * spins, *[7] * ("psi" in one.angles)]
-        columns = np.stack([self.column(self.motion.by_parameters[i]) for i in kept], axis=1)
+        self.kept = [0, 1, 2, 3, 4, *[5, 6] * spins, *[7] * ("psi" in one.angles)]
+        columns = self._columns(motion.by_parameters[self.kept].swapaxes(0, 1)).T
         norm = np.linalg.norm(columns, axis=0) + 1e-300
-        left, values, rows = np.linalg.svd(columns / norm, full_matrices=False)
+        left, values, axes = np.linalg.svd(columns / norm, full_matrices=False)
         sure = values > _DEPENDENT * values[0]
-        self.basis = left[:, sure]
-        self.inverse = (rows[sure].T / values[sure] / norm[:, np.newaxis])[: 5 + spins]
+        self.basis, self.inverse = left[:, sure], axes[sure].T / values[sure] / norm[:, np.newaxis]
         rest = (rest / self.sizes)[one.present]
         self.rest = rest - self.basis @ (self.basis.T @ rest)
+        self.chi2 = float(self.rest @ self.rest)
         self.free = max(self.rest.size - self.basis.shape[1], 2)
 
-    def column(self, change: Array) -> Array:
-        """Return a change of the angles on the grid as a change of the channels in the rows."""
-        rows = make_interp_spline(
-            self.motion.t, np.vstack([change, self.motion.angles[0]]), axis=-1
-        )
-        theta, phi, psi, tilt = rows(self.recording.t / self.period)
+    def _columns(self, changes: Array, row: int = 0) -> Array:
+        """Return changes on the grid as changes of the channels in the rows, in the last axis."""
+        t, tilt = self.motion.t, self.motion.angles[0]
+        theta, phi, psi = make_interp_spline(t, changes, axis=-1)(self.rows)
+        tilt = make_interp_spline(t, tilt)(self.rows)
         found = {"theta": theta, "phi": phi, "psi": psi}
         found |= {"across": np.sin(tilt) * psi, "along": phi + np.cos(tilt) * psi}
-        shown = np.stack([found[x] for x in self.recording.channels]) / self.sizes
-        return np.asarray(shown[self.recording.present])
+        shown = np.stack([found[x] for x in self.recording.channels], axis=-2) / self.sizes
+        shown = shown * (np.arange(self.rows.size) >= row)
+        return np.asarray(shown[..., self.recording.present])
+
+    def _everywhere(self, motion: Variations) -> Iterator[Neighbour]:
+        """Yield the neighbours of a motion that act in all rows."""
+        yield from machines(motion)
+        yield from misread(motion, self.recording)
+
+    def _from_row(self, motion: Variations) -> Iterator[Neighbour]:
+        """Yield steps of the angles and of the clock."""
+        for x in self.recording.angles:
+            yield Neighbour(f"a jump of {x}", "by {} degrees at", [motion.only(**{x: 1.0})])
+        yield Neighbour(LOST, "", [motion.rates * self.recording.frame / self.period])
 
     @cached_property
     def findings(self) -> list[Finding]:
         """What the recording shows of machines, and of faults of clock, camera and angles."""
-        one = self.recording
-        known = [*machines(self.motion), *misread(self.motion, one.kind, [*one.angles])]
-        return [self._finding(x, np.stack([*map(self.column, x.changes)], axis=1)) for x in known]
+        return [self._finding(x, self.motion) for x in self._everywhere(self.motion)]
+
+    @cached_property
+    def steps(self) -> list[Finding]:
+        """A step of each angle and of the clock, at the row where it explains most."""
+        present, found = self.recording.present, []
+        rows = np.broadcast_to(np.arange(self.rows.size), present.shape)[present]
+        order = np.argsort(-rows, kind="stable")
+        last = np.flatnonzero(np.diff(rows[order], append=-1))  # of the numbers of a row
+        for one in self._from_row(self.motion):
+            column = self._columns(one.changes[0])
+            parts = np.stack([column * self.rest, column**2, *(column * self.basis.T)])
+            work, size, *taken = np.cumsum(parts[:, order], axis=1)[:, last]
+            left = size - np.sum(np.square(taken), axis=0)
+            gains = np.where(left > 0.02 * size.max() / self.rows.size, work**2, 0.0)
+            row = int(rows[order][last[np.argmax((gains / (left + 1e-300))[_EDGE:-_EDGE]) + _EDGE]])
+            at = one._replace(row=row, tried=self.rows.size)
+            found.append(self._finding(at, self.motion))
+        return found
+
+    def _turning(self) -> Iterator[Finding]:
+        """Yield bodies that are not round, with the spin that explains most, if it is not seen."""
+        x = self.motion
+        rates = np.arange(abs(x.b) / 2, 2 * math.pi * _POINTS / _PER_TURN, 1.5 / x.length)
+        size = rates.size * max(x.t.size, self.rest.size)
+        if not (math.isnan(x.ratio) and x.b and 0 < size < _MOST_TRIED):
+            return
+        spins = np.copysign(rates, x.b)[:, np.newaxis]
+        for one in unround(x, x.angles[1] + (spins - x.b) * x.since):
+            columns = np.stack([self._columns(y) for y in one.changes], axis=-1)
+            columns = columns - self.basis @ (self.basis.T @ columns)
+            left, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+            parts = np.where(sizes > 1e-6 * sizes.max(), self.rest @ left, 0.0)
+            best = int(np.argmax(np.sum(parts**2, axis=1)))
+            changes, spin = [y[:, best] for y in one.changes], float(spins[best, 0])
+            motion = x.along(x.only(phi=(spin - x.b) * x.since), spin / x.b)
+            yield self._finding(one._replace(changes=changes, tried=rates.size), motion)
 
     @cached_property
     def shown(self) -> list[Finding]:
         """The neighbours that the recording shows, the best first."""
-        least = math.sqrt(_SURE_OF_STEP**2 + 2 * math.log(self.recording.t.size))
-        found = [(x.gain, x) for x in self.findings if x.is_shown]
-        found += [(x.gain - _SEARCHED, x) for x in self.steps if x.is_shown and x.sigmas > least]
-        return [x for _, x in sorted(found, key=lambda pair: -pair[0])]
+        likely, cost = [*self.findings, *self.steps], math.log(self.free)
+        if not (self.is_failing or any(x.is_shown for x in likely)):
+            return []
+        likely += self._turning() if self.is_failing else []
+        likely.sort(key=lambda x: self.free * math.log(x.chi2 + self.least) + x.directions * cost)
+        found = [y for x in likely[:_FOLLOWED] if (y := self._followed(x)).is_shown]
+        noise = min([(x.chi2, x.noise) for x in found], default=(0.0, 1.0))[1]
+        found = [x._replace(gain=x.gain * x.noise / noise - x.directions * cost) for x in found]
+        return sorted(found, key=lambda x: -x.gain)
 
-    @property
-    def is_late(self) -> bool:
-        """Whether rows may be lost somewhere, which a fit with a gap decides."""
-        return any(x.sigmas > _MAYBE and x.effect > _MOVED and x.name == _CLOCK for x in self.steps)
+    def _followed(self, found: Finding) -> Finding:
+        """Return what the recording shows of a neighbour along the motion that it has changed.
+
+        If this explains less, as for a clock that changes rates by much, return what was found.
+        """
+        begin, old, first = found.motion, found.one, found
+        for _ in range(_STEPS):
+            change = np.tensordot(found.sizes, found.one.changes, 1)
+            change += np.tensordot(found.moved, begin.by_parameters, 1)
+            motion = begin.along(change * (found.one.row == 0), begin.ratio)
+            every = [*self._everywhere(motion), *self._from_row(motion)]
+            every += unround(motion, motion.angles[1]) if math.isfinite(motion.ratio) else []
+            one = next(x for x in every if x.name == old.name)
+            found = self._finding(one._replace(row=old.row, tried=old.tried), motion)
+        return min(first, found, key=lambda x: x.chi2)
+
+    def _finding(self, one: Neighbour, motion: Variations) -> Finding:
+        """Return what the recording shows of a neighbour along a motion."""
+        raw = np.stack([self._columns(x, one.row) for x in one.changes], axis=1)
+        shared = self.basis.T @ raw
+        left, values, axes = np.linalg.svd(raw - self.basis @ shared, full_matrices=False)
+        sure = values > 1e-6 * np.linalg.norm(raw)
+        left, inverse, count = left[:, sure], axes[sure].T / values[sure], max(int(sure.sum()), 1)
+        parts = left.T @ self.rest
+        rest, sizes = self.rest - left @ parts, inverse @ parts
+        rests = self._by_channel(rest)
+        wide = np.repeat([x.widening() for x in rests], [x.y.size for x in rests])
+        noise = float(np.sum((wide * rest) ** 2)) / self.free + self.least
+        gain, chi2 = float(parts @ parts) / noise, float(rest @ rest)
+        freedom = max(self.free / float(np.mean(wide**2)) - count, 1.0)
+        chance = max(float(fdtrc(count, freedom, gain / count)), 1e-300)
+        size = float(sizes[0] if sizes.size == 1 else np.linalg.norm(sizes))
+        std = math.sqrt(noise / count) * float(np.linalg.norm(inverse)) if sure.any() else math.inf
+        spins = 5 + ("phi" in self.recording.angles)
+        by_one, moved = self.inverse @ shared, np.zeros(8)
+        moved[self.kept] = -by_one @ sizes
+        stds = math.sqrt(noise) * np.linalg.norm(self.inverse[:spins], axis=1) + 1e-300
+        small, largest = (SMALL**2, _WIDEST) if one.is_square else (SMALL, _LARGEST)
+        is_possible = (
+            math.isfinite(std) and abs(size) < largest and (size > 0 or not one.is_positive)
+        )
+        if one.name == LOST:
+            is_possible = abs(size) > 0.5 and abs(size - round(size)) < max(3 * std, 0.1)
+        is_far = any(x.is_large or x.outliers.any() for x in rests)
+        is_possible &= not is_far or chi2 * _EXPLAINS < self.chi2
+        unseen = min(small, abs(size) + _UNSEEN * std)
+        unseen = max(unseen, self.smoothing * one.is_square)
+        where = ""
+        if one.row:
+            where = f" t = {self.recording.t_start + float(self.recording.t[one.row]):.6g}"
+        elif math.isfinite(motion.ratio) and spins == 5:
+            where = f", if r0 = {motion.b * motion.ratio / self.period:.3g}"
+        return Finding(
+            one,
+            motion,
+            moved,
+            sizes,
+            size,
+            std,
+            bool(is_possible),
+            -float(ndtri(chance / 2)),
+            gain,
+            chi2,
+            noise,
+            float(np.max(np.abs(moved[:spins]) / stds)),
+            self._shifts(by_one * unseen),
+            std * _SURE > small,
+            where,
+        )
+
+    def _by_channel(self, rest: Array) -> list[Residuals]:
+        """Return residuals by channel, from those over their standard deviations."""
+        one, whole = self.recording, np.full(self.recording.present.shape, np.nan)
+        whole[one.present] = rest
+        found = zip(whole * self.sizes, one.present, self.residuals.values(), strict=True)
+        return [replace(old, t=one.t[x], y=y[x]) for y, x, old in found]
+
+    def _shifts(self, moved: Array) -> dict[str, Array]:
+        """Return relative changes of numbers by changes of parameters; that of r0 may be unseen."""
+        x = self.motion
+        spin = moved[5] / x.r0 if "phi" in self.recording.angles and x.r0 else 0 * moved[0]
+        tilt = x.by_parameters[self.kept, 0, 0] @ moved / x.angles[0, 0]
+        return {"a": moved[0] / x.a, "b": moved[1] / (x.b or math.inf), "r0": spin, "theta0": tilt}
+
+    @cached_property
+    def late(self) -> Finding | None:
+        """Rows that may be lost or doubled, which a fit with a gap decides."""
+        found = self.steps[-1]
+        is_hinted = found.sigmas > _MAYBE and found.effect > _MOVED and abs(found.size) > 0.5
+        return found if is_hinted and not found.is_shown else None
 
     @property
     def name(self) -> str:
@@ -257,118 +451,39 @@ class Neighbours:
         return sorted(found, key=lambda x: -max(np.abs([*x.shifts["a"], *x.shifts["b"]])))
 
     def errors(self, *, has_moment: bool) -> dict[str, float]:
-        """Return the relative model errors of a, b, A and C: by neighbours that are not shown.
+        """Return the relative model errors of a, b, A, C and theta0 by what is not shown.
 
         A known moment A has none.
         """
         hidden = [x.shifts for x in self.findings if not x.is_shown]
-        a, b, r0 = (np.concatenate([x[y] for x in hidden]) for y in ("a", "b", "r0"))
+        hidden += [self._shifts(x.moved[self.kept, np.newaxis]) for x in (self.late,) if x]
+        a, b, tilt, r0 = (
+            np.concatenate([x[y] for x in hidden]) for y in ("a", "b", "theta0", "r0")
+        )
         moment = 0 * a if has_moment else -a
-        found = {"a": a, "b": b, "A": moment, "C": b + moment - r0}
+        found = {"a": a, "b": b, "A": moment, "C": b + moment - r0, "theta0": tilt}
         return {x: float(np.linalg.norm(y)) for x, y in found.items()}
 
     @property
     def line(self) -> str:
         """The neighbours that move the numbers most, if the recording does not test them."""
-        names = ", ".join(x.name for x in self.untested[:_LINES])
-        return f"1 % each of {names}, which the recording cannot show" if names else ""
-
-    def _widening(self, rest: Array) -> Array:
-        """Return the factors of standard deviations for what correlates from row to row."""
-        one, whole = self.recording, np.full(self.recording.present.shape, np.nan)
-        whole[one.present] = rest
-        found = zip(whole * self.sizes, one.present, self.residuals.values(), strict=True)
-        wide = [Residuals(one.t[x], y[x], old.step).widening() for y, x, old in found]
-        return np.asarray((np.array(wide)[:, np.newaxis] + 0 * whole)[one.present])
-
-    def _finding(self, one: Neighbour, raw: Array) -> Finding:
-        """Return what the recording shows of a neighbour whose columns are `raw`."""
-        shared = self.basis.T @ raw
-        left, values, rows = np.linalg.svd(raw - self.basis @ shared, full_matrices=False)
-        sure = values > 1e-6 * np.linalg.norm(raw)
-        left, inverse, count = left[:, sure], rows[sure].T / values[sure], max(int(sure.sum()), 1)
-        parts = left.T @ self.rest
-        rest = self.rest - left @ parts
-        wide = self._widening(rest)
-        noise = float(np.sum((wide * rest) ** 2)) / self.free + self.least
-        gain, sizes = float(parts @ parts) / noise, inverse @ parts
-        freedom = max(self.free / float(np.mean(wide**2)) - count, 1.0)
-        chance = max(float(fdtrc(count, freedom, gain / count)), 1e-300)
-        size = float(sizes[0] if sizes.size == 1 else np.linalg.norm(sizes))
-        std = math.sqrt(noise / count) * float(np.linalg.norm(inverse)) if sure.any() else math.inf
-        moved = self.inverse @ shared
-        stds = math.sqrt(noise) * np.linalg.norm(self.inverse, axis=1) + 1e-300
-        root = math.sqrt(abs(size)) + 1e-300
-        pair = (root, std / 2 / root) if one.is_square else (size, std)
-        largest = _WIDEST if one.is_square else _LARGEST
-        is_possible = math.isfinite(std) and abs(size) < largest
-        is_possible &= size > 0 or not one.is_positive
-        small = SMALL**2 if one.is_square else SMALL
-        shown = uncertain_text(*(100 * x for x in pair)) if is_possible else ""
-        unseen = min(small, abs(size) + _UNSEEN * std)
-        unseen = max(unseen, self.smoothing * one.is_square)
-        return Finding(
-            f"{one.name} {one.amount.format(shown)}",
-            one.name,
-            is_possible,
-            size,
-            std,
-            -float(ndtri(chance / 2)),
-            gain,
-            float(np.max(np.abs(moved @ sizes) / stds)),
-            self._shifts(moved * unseen),
-            std * _SURE > small,
-        )
-
-    def _shifts(self, moved: Array) -> dict[str, Array]:
-        """Return changes of NUMBERS, relative ones of a, b and r0, which is 0 without the spin."""
-        sizes = {"a": self.motion.a, "b": self.motion.b, "r0": self.motion.r0}
-        found = {x: np.zeros(moved.shape[1]) for x in NUMBERS}
-        rows = zip(NUMBERS, moved, strict=False)
-        return found | {x: y / (sizes.get(x, 1.0) or math.inf) for x, y in rows}
-
-    @cached_property
-    def steps(self) -> list[Finding]:
-        """A step of each angle and of the clock, at the row where it explains most."""
-        return [*self._steps()]
-
-    def _steps(self) -> Iterator[Finding]:
-        """Yield the steps; that of the clock is possible if it is a whole number of rows."""
-        one, frame, motion = self.recording, self.recording.frame / self.period, self.motion
-        rows = np.broadcast_to(np.arange(one.t.size), one.present.shape)[one.present]
-        order = np.argsort(-rows, kind="stable")
-        last = np.flatnonzero(np.diff(rows[order], append=-1))  # of the numbers of a row
-        tries = {x: self.column(motion.only(**{x: 1.0})) for x in one.angles}
-        for name, column in [*tries.items(), (_CLOCK, self.column(motion.rates) * frame)]:
-            parts = np.stack([column * self.rest, column**2, *(column * self.basis.T)])
-            work, size, *taken = np.cumsum(parts[:, order], axis=1)[:, last]
-            left = size - np.sum(np.square(taken), axis=0)
-            gains = np.where(left > 0.02 * size.max() / one.t.size, work**2, 0.0) / (left + 1e-300)
-            row = int(rows[order][last[np.argmax(gains[3:-3]) + 3]])
-            found = self._finding(Neighbour(name, "", []), (column * (rows >= row))[:, np.newaxis])
-            x, std, at = found.size, found.std, f"at t = {one.t_start + float(one.t[row]):.6g}"
-            if name != _CLOCK:
-                shown = uncertain_text(math.degrees(x), math.degrees(std))
-                yield found._replace(text=f"a jump of {name} by {shown} degrees {at}")
-                continue
-            is_whole = abs(x) > 0.5 and abs(x - round(x)) < max(3 * std, 0.1)
-            what = f"{uncertain_text(abs(x), std)} {'doubled' if x < 0 else 'lost'} rows"
-            yield found._replace(text=f"{what} {at}", is_possible=is_whole)
+        names = ", ".join(x.one.name for x in self.untested[:_LINES])
+        late = f", and maybe {self.late.text}" if self.late else ""
+        return f"1 % each of {names}, which the recording cannot show{late}" if names else late[2:]
 
 
 def neighbours_of(
     recording: Measured,
     residuals: Mapping[str, Residuals],
-    motion: Callable[[Array], Array],
+    motion: Array,
     inputs: Mapping[str, float],
     period: float,
-    *,
-    smoothing: float = 0.0,
+    **others: Any,
 ) -> Neighbours | None:
-    """Return the neighbours of a fitted motion with some inputs of `Top`.
+    """Return the neighbours of a motion with some inputs of `Top`, given in the rows.
 
-    `smoothing` is the square of the width of a filter, over the period, if one made the noise
-    smooth.  The result is None if there are none: of one angle, or of a motion that passes a pole.
+    All others are those of `Neighbours`.  The result is None if there are none: of one angle, or of
+    a motion that passes a pole.
     """
     one, has = recording, inputs
     if len(one.channels) < 2:
@@ -381,6 +496,6 @@ def neighbours_of(
     turns = np.nan_to_num(abs(b * ratio)) * length / (2 * math.pi)
     count = int(min(max(_POINTS * length, _PER_TURN * turns, 5 * _POINTS), _MOST_POINTS))
     found = Variations(np.array([a, b, *start]), ratio, np.linspace(0, length, count))
+    rest = one.residuals(*motion)
     is_away = np.isfinite(found.slopes).all() and found.sine.min() > _POLE
-    rest = one.residuals(*motion(one.t))
-    return Neighbours(one, residuals, found, rest, period, smoothing=smoothing) if is_away else None
+    return Neighbours(one, residuals, found, rest, period, **others) if is_away else None

@@ -22,8 +22,8 @@ from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
-from .neighbours import Neighbours, neighbours_of
-from .reasons import MISFITS, Kind, OtherReading, Reason
+from .neighbours import LOST, Finding, Neighbours, neighbours_of
+from .reasons import ADVICE, MISFITS, Kind, Reason
 from .rows import repeated
 
 if TYPE_CHECKING:
@@ -97,11 +97,9 @@ class Outcome(HasRecord):
     units: Units = DEGREES
     """The units of texts and records."""
     reasons: Sequence[Reason] = ()
-    """Why the fit has failed, besides the residuals: the top or a known input."""
+    """Why the fit has failed, besides the residuals: the top or a known input; and advice."""
     notes: Sequence[str] = ()
     """What was assumed, and how the recording was interpreted."""
-    hints: Sequence[str] = ()
-    """What to try if the fit has failed, as other fits confirm."""
     inputs: Mapping[str, float] | None = None
     """Inputs of `Top` with this motion; None for a steady precession."""
     arbitrary: Collection[str] = ()
@@ -157,18 +155,36 @@ class Outcome(HasRecord):
 
         A known input contradicts only a motion that is right.
         """
-        found = [*self.reasons, *self._of_data(), *self._misfits()]
-        if self.neighbour:
-            other = f"this is not a Lagrange top alone: {self.neighbour}"
-            found.append(Reason(Kind.MACHINE, other))
+        found = [x for x in self.reasons if x.kind not in ADVICE]
+        found += [*self._of_data(), *self._misfits(), *self._of_neighbours()]
         found.sort(key=lambda x: x.kind)
         return [x for x in found if x.kind < Kind.KNOWN] or found
 
+    @property
+    def is_open(self) -> bool:
+        """Whether the recording determines no top, or several."""
+        return any(x.kind is Kind.OPEN for x in self.failed)
+
+    @property
+    def hints(self) -> list[Reason]:
+        """What to try if the fit has failed, as other fits confirm."""
+        return [x for x in self.reasons if x.kind in ADVICE]
+
     def failures(self) -> list[Reason]:
         """Return the reasons why the fit has failed; a reading that is good needs no machine."""
-        is_misread = any(isinstance(x, OtherReading) for x in self.hints)
+        is_misread = any(x.kind is Kind.READING for x in self.hints)
         kept = [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
         return kept or self.failed
+
+    def _of_neighbours(self) -> Iterator[Reason]:
+        """Yield what else than a Lagrange top the recording shows."""
+        if self.neighbour:
+            first = next(iter(self.shown))
+            if first == LOST:
+                yield Reason(Kind.ROWS, f"{self.neighbour}: write the times of the frames")
+            else:
+                shows = "the recording shows more than a Lagrange top"
+                yield Reason(Kind.MACHINE, f"{shows}: {self.neighbour}")
 
     def _of_data(self) -> Iterator[Reason]:
         """Yield what is wrong with the rows, whatever the motion."""
@@ -208,12 +224,19 @@ class Outcome(HasRecord):
     @cached_property
     def neighbours(self) -> Neighbours | None:
         """What else the recording could be; None if this cannot be said."""
-        is_far = any(x.is_large or x.outliers.any() for x in self.residuals.values())
-        if is_far or self.inputs is None:
+        if self.inputs is None:
             return None
-        smoothing = self.lost / (2 * math.pi**2)
-        has = self.motion, self.inputs, 1 / self.frequency
-        return neighbours_of(self.recording, self.residuals, *has, smoothing=smoothing)
+        others: Any = {
+            "smoothing": self.lost / (2 * math.pi**2),
+            "is_failing": any(self._misfits()),
+        }
+        has = self.motion(self.recording.t), self.inputs, 1 / self.frequency
+        return neighbours_of(self.recording, self.residuals, *has, **others)
+
+    @property
+    def shown(self) -> dict[str, Finding]:
+        """The neighbours that the recording shows by name, the best first."""
+        return {x.one.name: x for x in self.neighbours.shown} if self.neighbours else {}
 
     @property
     def neighbour(self) -> str:
@@ -229,10 +252,11 @@ class Outcome(HasRecord):
 
     @property
     def model_errors(self) -> dict[str, float]:
-        """The relative model errors of a, b, A and C, as far as they are numbers of the fit."""
+        """The relative model errors of a, b, A, C and the tilt, as far as the fit has them."""
         if not self.neighbours:
             return {}
         found = self.neighbours.errors(has_moment="A" in all_replaced(self.known))
+        found[self.units.key("theta0_rad")] = found.pop("theta0")
         return {x: y for x, y in found.items() if x in self.numbers}
 
     @property

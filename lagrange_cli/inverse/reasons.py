@@ -1,4 +1,4 @@
-"""Why a fit has failed: reasons of one type, in the order of the report."""
+"""Why a fit has failed, and what to try: reasons of one type, in the order of the report."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ..errors import Message
 
 
 class Kind(IntEnum):
-    """What is wrong, the plainest first."""
+    """What is wrong, the plainest first, and advice at the end."""
 
     PIVOT = auto()
     """The origin of a marker is not the pivot."""
     ROWS = auto()
-    """Rows are repeated."""
+    """Rows are repeated or lost."""
     OPEN = auto()
     """The recording determines no top, or several."""
     IMPOSSIBLE = auto()
@@ -31,16 +31,24 @@ class Kind(IntEnum):
     """The residuals are larger than the noise that was given."""
     KNOWN = auto()
     """A known input contradicts the recording."""
+    READING = auto()
+    """Advice: the recording was misread, and a fit of the other reading is good."""
+    WINDOWS = auto()
+    """Advice: the spin decays, and fits of windows are good, or show its loss."""
+    CHECK = auto()
+    """Advice: what to check, because nothing else explains the failure."""
 
 
-WRONG = {Kind.ROWS, Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
+NEEDS_ADVICE = {Kind.OPEN, Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
 """Kinds that a mistake in the recording may cause."""
 MISFITS = {Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS, Kind.SIGMA}
 """Kinds of a motion that does not match the recording."""
+ADVICE = {Kind.READING, Kind.WINDOWS, Kind.CHECK}
+"""Kinds that say what to try."""
 
 
 class Reason(Message):
-    """A reason why a fit has failed."""
+    """A reason why a fit has failed, or advice."""
 
     kind: Kind
 
@@ -49,7 +57,3 @@ class Reason(Message):
         found = super().__new__(cls, text)
         found.kind = kind
         return found
-
-
-class OtherReading(Message):
-    """A remedy: the recording was misread, and a fit of the other reading is good."""

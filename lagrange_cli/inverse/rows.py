@@ -1,14 +1,15 @@
-"""Rows that a recorder repeated or lost."""
+"""Rows that a recorder repeated or lost, rounded times, and rows before a release."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from ..arithmetic.types import Array, Mask
-from .measured import Measured
-from .signals import oscillation_in, signals_in
+from .measured import Measured, frames_of
+from .signals import noise_of, oscillation_in, signals_in
 
 _COARSE = 0.05
 """Share of rows in which one angle alone repeats, from which its steps are coarse."""
@@ -22,6 +23,16 @@ _NEAR = 21
 """Frequencies that are tried with a loss."""
 _ORDER = 2
 """Harmonics that are tried with a loss; twice as many decide between near rows."""
+_HELD = 12
+"""Least number of rows before a release."""
+_RELEASED = 6.0
+"""Standard deviations that show a release."""
+_STILL = 3.5
+"""Scatter of the rows before a release, over the noise of neighbours, above which they move."""
+_WHOLE = 1e-4
+"""Deviation of rounded times from whole units, in units."""
+_ROUNDED = 0.6
+"""Deviation of rounded times from even ones, in units."""
 
 
 def repeated(recording: Measured) -> str:
@@ -45,6 +56,18 @@ def repeated(recording: Measured) -> str:
     if count == 1:
         return f"the row at t = {at:.6g} repeats the row before it"
     return f"{count} rows repeat the row before them, the first at t = {at:.6g}"
+
+
+def frequency_of_parts(recording: Measured) -> float:
+    """Return the higher frequency of the nutation in both halves, as harmonics show it.
+
+    In a recording whose rows are lost or whose motion changes, harmonics of a lower one describe
+    the whole better.
+    """
+    middle = recording.t.size // 2
+    halves = (recording.part(x) for x in (slice(middle), slice(middle, None)))
+    found = [oscillation_in(signals_in(x)) for x in halves]
+    return max([x for x, is_visible in found if is_visible], default=found[0][0])
 
 
 def with_gap(recording: Measured, row: int, count: int) -> Measured:
@@ -81,3 +104,46 @@ def likely_gap(recording: Measured) -> tuple[int, int] | None:
     near = range(max(row - step + 1, edge), min(row + step, size - edge))
     exact = {(x, n): noise(x, n, 2 * _ORDER) for x in near for n in range(1, _MOST_LOST + 1)}
     return min(exact, key=lambda x: exact[x])
+
+
+def evenly_timed(recording: Measured) -> Measured | None:
+    """Return a recording at even times, if its times are these after rounding to some digits."""
+    t = recording.t_start + recording.t
+    sizes = (10.0**-k for k in range(9))
+    unit = next((x for x in sizes if np.abs(t / x - np.round(t / x)).max() < _WHOLE), 0.0)
+    frames = np.arange(t.size, dtype=float)
+    for _ in range(4):
+        step, start = np.polyfit(frames, recording.t, 1)
+        off = np.abs(recording.t - start - step * frames)
+        if unit / 10 < np.median(off) and off.max() < _ROUNDED * unit:
+            return replace(recording, t=step * frames)
+        frames = frames_of(recording.t, step)  # some are missing
+    return None
+
+
+def calmness(recording: Measured) -> float:
+    """Return the logarithm of the noise that harmonics of one frequency leave, over the angles."""
+    signals = signals_in(recording)
+    frequency, _ = oscillation_in(signals)
+    return sum(math.log(x) for x in noise_of(signals, frequency, recording).values())
+
+
+def release(recording: Measured) -> int:
+    """Return the row in which a top that was held begins to move, or 0.
+
+    The first rows of a top that is held differ only by noise.
+    """
+    rows = []
+    for name, values in recording.angles.items():
+        seen = np.flatnonzero(np.isfinite(values))
+        if name == "phi" or seen.size <= _HELD:
+            continue
+        y = values[seen] if name == "theta" else np.unwrap(values[seen])
+        noise = max(float(np.std(y[:_HELD])), 1e-9) * _RELEASED
+        moves = np.flatnonzero(np.abs(y - y[:_HELD].mean()) > noise)
+        held = y[: moves[0]] if moves.size else y
+        if np.std(held) > _STILL * math.sqrt(np.mean(np.diff(held) ** 2) / 2) + 1e-9:
+            return 0
+        rows.append(int(seen[moves[0]]) if moves.size else values.size)
+    row = min(rows, default=0)
+    return row if _HELD < row < recording.t.size - 2 * _HELD else 0

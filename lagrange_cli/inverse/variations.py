@@ -8,6 +8,7 @@ machine to first order, without an integration.
 from __future__ import annotations
 
 import math
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +16,7 @@ from scipy.integrate import cumulative_simpson
 from scipy.interpolate import make_interp_spline
 
 from ..arithmetic.types import Array
+from ..names import ANGLES
 from .motions import angles, states_of
 
 _STEP = 1e-5
@@ -27,7 +29,7 @@ class Variations:
     """A motion on a grid of times, in units of its nutation period and with A = 1, and its changes.
 
     The `state` is (a, b, theta, thetadot, psidot) at t = 0.  The ratio A/C is NaN if the spin is
-    not recorded.  Changes of theta, phi and psi have the shape (3, times).
+    not recorded.  Changes of theta, phi and psi have the shape (3, ..., times).
     """
 
     def __init__(self, state: Array, ratio: float, t: Array) -> None:
@@ -56,7 +58,15 @@ class Variations:
 
     def only(self, **changes: Array | float) -> Array:
         """Return a change of some of the angles."""
-        return np.stack([changes.get(x, 0.0) + 0 * self.t for x in ("theta", "phi", "psi")])
+        return np.stack(np.broadcast_arrays(*[changes.get(x, 0.0) + 0 * self.t for x in ANGLES]))
+
+    def along(self, change: Array, ratio: float) -> Variations:
+        """Return the same with forces along a changed motion, whose A/C may be another one."""
+        found = copy(self)
+        found.angles, found.rates, found.ratio = self.angles + change, self.rates.copy(), ratio
+        found.rates += self.slope(change)
+        found.sine, found.cosine = np.sin(found.angles[0]), np.cos(found.angles[0])
+        return found
 
     @cached_property
     def by_parameters(self) -> Array:
@@ -80,8 +90,8 @@ class Variations:
         force, (place, momentum) = self.only(**forces), self.canonical
         found = []
         for x, y in ((place, -momentum), (momentum, place)):
-            work = cumulative_simpson(np.einsum("ikt,it->kt", y, force), x=self.t, initial=0)
-            found.append(np.einsum("ikt,kt->it", x, work))
+            work = cumulative_simpson(np.einsum("ikt,i...t->k...t", y, force), x=self.t, initial=0)
+            found.append(np.einsum("ikt,k...t->i...t", x, work))
         return np.asarray(sum(found))
 
     @cached_property
