@@ -16,30 +16,19 @@ from lagtop import Top
 from record_reference import reference_record
 
 
-class Erratum(NamedTuple):
-    """An erratum in the text at hand: a row of `errata.tsv`.
-
-    `place` is the equation as the registers call it, with " as printed, ..." where it has several
-    errata; `tested` says whether a register computes it.
-    """
-
-    source: str
-    section: str
-    place: str
-    kind: str
-    tested: str
-    right: str
-
-
-with (Path(__file__).parent / "errata.tsv").open(encoding="utf-8", newline="") as _file:
-    ERRATA = [Erratum(*row) for row in csv.reader(_file, "excel-tab")][1:]
-"""All errata, in the order of the sources."""
+def table(name: str) -> list[dict[str, str]]:
+    """Return the rows of a table in this folder."""
+    with (Path(__file__).parent / f"{name}.tsv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file, dialect="excel-tab"))
 
 
 def misprints(source: str, *sections: int) -> set[str]:
-    """Return the places of the errata in some sections that a register must compute."""
-    some = [x for x in ERRATA if x.source == source and int(x.section) in sections]
-    return {x.place for x in some if x.tested == "yes"}
+    """Return the places of the errata in some sections that a register must compute.
+
+    They are the equations as the registers call them, with " as printed, ..." if several.
+    """
+    found = (x for x in table("errata") if x["source"] == source and x["tested"] == "yes")
+    return {x["place"] for x in found if int(x["section"]) in sections}
 
 
 class Figure(NamedTuple):
@@ -55,8 +44,7 @@ class Figure(NamedTuple):
     own: str
 
 
-with (Path(__file__).parent / "figures.tsv").open(encoding="utf-8", newline="") as _file:
-    FIGURES = [Figure(*row) for row in csv.reader(_file, "excel-tab")][1:]
+FIGURES = [Figure(*row.values()) for row in table("figures")]
 """All numbers printed in section 8 that are computed there."""
 
 

@@ -6,16 +6,15 @@ The exact values are those of `lagtop` in many digits; a test compares them with
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cache
 from operator import itemgetter
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import mpmath
 from conftest import ROOT
+from errata import table
 from lagtop import Motion, read_scene, solve
 from ours import ManyDigits, Ours
 from record_reference import reference_columns, reference_record
@@ -73,8 +72,7 @@ def _elementary(t: str) -> Printed:
     return Printed("Whittaker §71, sec ϑ = 1 + sech √3t", "whittaker-71", "theta", text, t)
 
 
-with (Path(__file__).parent / "published.tsv").open(encoding="utf-8", newline="") as _file:
-    PRINTED = [Printed(*row) for row in csv.reader(_file, "excel-tab")][1:]
+PRINTED = [Printed(*row.values()) for row in table("published")]
 PRINTED[-1:-1] = [_elementary(t) for t in ("1", "5", "-2")]
 """All numbers, as their sources have them."""
 
@@ -104,9 +102,9 @@ def exact(x: Printed, *, by_reference: bool = False) -> Many:
         if by_reference:
             now = reference_columns(motion(x.scene).top.as_dict(), Fraction(x.t))
         else:
-            table = ProvedTable(motion(x.scene), COLUMNS, DIGITS, units=Units(radians=True))
-            row = (mpmath.mpf(found.value) for found in table.row(Fraction(x.t)))
-            now = dict(zip(table.chosen, row, strict=True))
+            proved = ProvedTable(motion(x.scene), COLUMNS, DIGITS, units=Units(radians=True))
+            row = (mpmath.mpf(found.value) for found in proved.row(Fraction(x.t)))
+            now = dict(zip(proved.chosen, row, strict=True))
         value = QUANTITIES[x.quantity](now)
         if x.quantity.startswith("Rot"):  # angles of a rotation have the whole turns of the print
             value += 2 * mpmath.pi * mpmath.nint((mpmath.mpf(x.text) - value) / 2 / mpmath.pi)
