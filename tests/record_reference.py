@@ -31,11 +31,7 @@ def exact(x: Any) -> Many:
 
 
 def reference_record(
-    inputs: Mapping[str, Any],
-    *,
-    radians: bool = False,
-    digits: int = DIGITS,
-    root_digits: int = ROOT_DIGITS,
+    inputs: Mapping[str, Any], *, digits: int = DIGITS, root_digits: int = ROOT_DIGITS
 ) -> dict[str, Many]:
     """Return all numbers of a motion by key, None for those that do not exist.
 
@@ -44,13 +40,12 @@ def reference_record(
     of = _motion(tuple(inputs.items()), digits, root_digits)
     with mp.workdps(root_digits):
         found = of.record
-
-    def shown(key: str, x: Many) -> Many:
-        return x if x is None or not key.endswith("_rad") or radians else x * of.degrees
-
     with mp.workdps(digits):
-        unit = "_rad" if radians else "_deg"
-        return {key.replace("_rad", unit): shown(key, x) for key, x in found.items()}
+        angles = {x for x, y in found.items() if x.endswith("_rad") and y is not None}
+        return {
+            key.replace("_rad", "_deg"): x * of.degrees if key in angles else x
+            for key, x in found.items()
+        }
 
 
 class State(NamedTuple):

@@ -40,7 +40,7 @@ COLUMNS_OF_STATE = [x for x in COLUMNS if x not in {"t", "dphi", "dpsi"}]
 def test_proved_rows_are_those_of_the_reference(name: str) -> None:
     """Thirty digits of every column, of dphi, dpsi and wrapped angles; and the radii of doubles."""
     inputs, motion = Top(**EVERY_KIND[name]).as_dict(), solve(Top(**EVERY_KIND[name]))
-    record = reference_record(inputs, radians=True, root_digits=400)
+    record = reference_record(inputs, root_digits=400)
     many = ProvedTable(motion, [*COLUMNS_OF_STATE, "dphi", "dpsi"], 30, units=Units(radians=True))
     doubles = ProvedTable(motion, COLUMNS_OF_STATE, units=Units(radians=True))
     wrapped = ProvedTable(motion, list(MEANS), 30, units=Units(radians=True), wrap=True)
