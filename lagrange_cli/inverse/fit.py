@@ -40,7 +40,8 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
         frequency = frequency_of_parts(recording)
         if abs(math.log(frequency / outcome.frequency)) > _OTHER:
             other = best_fit(recording, known, units=units, frequency=frequency)
-            outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
+            if not other.is_open:
+                outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
     advice = Advice(recording, known, outcome, process_time() - begun)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
