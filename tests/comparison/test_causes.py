@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from engines import Array, Body, dop853, wxyz
 from lagtop import Top, compare, solve
-from mistakes import SCENES, Engine, mistakes_of, rk4, semi_implicit, top_of
+from mistakes import SCENES, mistakes_of, rk4, semi_implicit, top_of
 from mistakes import run as engine_run
 from scipy.spatial.transform import Rotation
 
@@ -35,28 +35,13 @@ def run(name: str, mistake: str = "right", method: str = "DOP853") -> tuple[Rota
 
 def planted(scene: dict[str, float]) -> dict[str, tuple[str, Any]]:
     """Return engines with mistakes by a short name, each with a part of the name of its cause."""
-    found = mistakes_of(scene)
-    right, (r0, degrees, thetadot0, psidot0) = found["right"][1], [*scene.values()][5:9]
-    tilt = math.radians(degrees)
-
-    def start(angle: float = tilt, r: float = r0, slope: float = 1) -> Engine:
-        return right._replace(tilt=angle, rates=(slope * thetadot0, psidot0 * math.sin(angle), r))
-
-    starts = {
-        "r0 in degrees was taken as radians": start(r=math.degrees(r0)),
-        "r0 in rpm was taken as radians": start(r=r0 * 30 / math.pi),
-        "r0 was taken as the gimbal's rate phi'": start(r=r0 + psidot0 * math.cos(tilt)),
-        "thetadot0 has the wrong sign": start(slope=-1),
-        "theta0 has the wrong sign": start(-tilt),
-        "theta0 in radians was taken as degrees": start(math.radians(tilt)),
-        "theta0 in degrees was taken as radians": start(math.degrees(tilt)),
-        "theta0 is doubled": start(2 * tilt),
-        "theta0 is measured from the horizontal": start(math.pi / 2 - tilt, slope=-1),
-        "theta0 and its rate are measured from": start(math.pi / 2 - tilt),
-        "g is 981": right._replace(torque=right.torque * 981 / 9.81),
-    }
-    named = {key: x for key, x in found.items() if x[0][0] != "#" and x[1].tilt == tilt}
-    return {"right": found["right"]} | named | {name: (name, x) for name, x in starts.items()}
+    found: dict[str, tuple[str, Any]] = {**mistakes_of(scene)}
+    right, r0 = found["right"][1], scene["r0"]
+    for unit, r in {"degrees": math.degrees(r0), "rpm": r0 * 30 / math.pi}.items():
+        name = f"r0 in {unit} was taken as radians"
+        found[name] = name, right._replace(rates=(*right.rates[:2], r))
+    found["g is 981"] = "g is 981", right._replace(torque=right.torque * 981 / 9.81)
+    return {key: x for key, x in found.items() if key == "right" or x[0][0] != "#"}
 
 
 def attitude(turn: Rotation, **others: Any) -> Given:
@@ -258,7 +243,7 @@ def test_the_clock_is_off_by_several_periods() -> None:
 def test_degrees_that_are_less_than_a_turn_and_a_radian() -> None:
     """A tilt of 7 rad leans to the same side as a tilt of 7 - 2 pi rad."""
     name = "theta0 in degrees was taken as radians"
-    _, states = dop853(planted(SCENES["general"] | {"theta0_deg": 7})[name][1], T, 1e-10)
+    _, states = dop853(planted(SCENES["general"] | {"theta0_deg": 7})["theta radians"][1], T, 1e-10)
     assert compare(TOP.replace(theta0_deg=7), T, quaternion=states[:, :4]).cause == name
 
 

@@ -100,14 +100,18 @@ def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
 
     Each comes with a part of the name that `compare` has for it, or "#" if it has none.
     """
-    m, A, C, s, g, r0, degrees, slope, psidot, _ = scene.values()
+    m, A, C, s, g, r0, degrees, thetadot0, psidot0, _ = scene.values()
     tilt, steiner, w = math.radians(degrees), m * s * s, m * g * s
-    moved = slope, psidot * math.sin(tilt)
-    right = Engine(A, C - A, w, tilt, (*moved, r0))
-    lying, no_com = {"tilt": math.pi / 2 - tilt}, {"twist": -steiner}
+    no_com = {"twist": -steiner}
 
-    def spin(r: float) -> dict[str, Any]:
-        return {"rates": (*moved, r)}
+    def start(
+        angle: float = tilt, r: float = r0, slope: float = 1, turn: float = 1
+    ) -> dict[str, Any]:
+        around = turn * psidot0 * math.sin(angle)
+        return {"tilt": angle, "rates": (slope * thetadot0, around, r)}
+
+    lying = start(math.pi / 2 - tilt, slope=-1)
+    around, upright = (psidot0 + r0) * math.sin(tilt), r0 * math.cos(tilt)
 
     def moments(a: float = A, c: float = C) -> dict[str, Any]:
         return {"A": a, "twist": c - a}
@@ -133,40 +137,47 @@ def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
         "A, C exchanged": ("A and C are exchanged", {"A": C, "twist": A - C}),
         "vertical spin": (
             "the spin r0 is about the vertical",
-            {"rates": (slope, moved[1] + r0 * math.sin(tilt), r0 * math.cos(tilt))},
+            {"rates": (thetadot0, around, upright)},
         ),
-        "r0 sign": ("r0 has the wrong sign", spin(-r0)),
-        "r0 - 10 %": ("r0 is", spin(0.9 * r0)),
-        "r0 rpm": ("r0 in radians was taken as rpm", spin(r0 * math.pi / 30)),
-        "r0 degrees": ("r0 in radians was taken as degrees", spin(math.radians(r0))),
+        "r0 sign": ("r0 has the wrong sign", start(r=-r0)),
+        "r0 - 10 %": ("r0 is", start(r=0.9 * r0)),
+        "r0 rpm": ("r0 in radians was taken as rpm", start(r=r0 * math.pi / 30)),
+        "r0 degrees": ("r0 in radians was taken as degrees", start(r=math.radians(r0))),
         "damping .05": ("#decay", {"damping": 0.05}),
         "damping .5": ("#decay", {"damping": 0.5}),
         "dt x 2": ("twice as long", {"clock": 2}),
         "dt / 2": ("half as long", {"clock": 0.5}),
         "half missing": ("the factor 1/2 is missing in the rate of the quaternion", {"half": 1}),
         "horizontal": ("theta0 is measured from the horizontal", lying),
-        "theta x 2": ("theta0 is doubled", {"tilt": 2 * tilt}),
+        "theta x 2": ("theta0 is doubled", start(2 * tilt)),
+        "theta degrees": ("theta0 in radians was taken as degrees", start(math.radians(tilt))),
+        "theta radians": ("theta0 in degrees was taken as radians", start(degrees)),
         "inertia": ("does not turn", {"rule": "inertia"}),
         "side": ("on the left", {"rule": "side"}),
         "torque": ("torque", {"rule": "torque"}),
-        "gravity x 2 + r0 sign": ("twice; r0 has", {"torque": 2 * w} | spin(-r0)),
+        "gravity x 2 + r0 sign": ("twice; r0 has", {"torque": 2 * w} | start(r=-r0)),
         "C = A + damping": ("#decay", moments(c=A) | {"damping": 0.05}),
         "gyro / 2 + horizontal": ("#", moments(c=(A + C) / 2) | lying),
         "no gyro com + moon": ("#", no_com | {"torque": MOON * w}),
-        "A + 5 % + r0 sign": ("#", spin(-r0) | moments(1.05 * A)),
+        "A + 5 % + r0 sign": ("#", start(r=-r0) | moments(1.05 * A)),
         "C = A + gravity / 2": ("#", {"torque": w / 2} | moments(c=A)),
         "C - 5 % + moon": ("#", {"torque": MOON * w} | moments(c=0.95 * C)),
-        "r0 - 10 % + g 10": ("#", {"torque": w * 10 / 9.81} | spin(0.9 * r0)),
-        "A - ms2 + r0 sign": ("s^2); r0", spin(-r0) | moments(A - steiner)),
+        "r0 - 10 % + g 10": ("#", {"torque": w * 10 / 9.81} | start(r=0.9 * r0)),
+        "A - ms2 + r0 sign": ("s^2); r0", start(r=-r0) | moments(A - steiner)),
         "C + 20 % + damping": ("#decay", moments(c=1.2 * C) | {"damping": 0.05}),
     }
-    if slope or psidot:
-        for name, rates in (
-            ("thetadot0 is left out", (0.0, moved[1])),
-            ("psidot0 has the wrong sign", (slope, -moved[1])),
-            ("psidot0 is left out", (slope, 0.0)),
-        ):
-            found[name] = name, {"rates": (*rates, r0)}
+    if thetadot0 and psidot0:
+        for name, x in {
+            "thetadot0 is left out": start(slope=0),
+            "thetadot0 has the wrong sign": start(slope=-1),
+            "psidot0 has the wrong sign": start(turn=-1),
+            "psidot0 is left out": start(turn=0),
+            "theta0 has the wrong sign": start(-tilt),
+            "theta0 and its rate are measured from": start(math.pi / 2 - tilt),
+            "r0 was taken as the gimbal's rate phi'": start(r=r0 + psidot0 * math.cos(tilt)),
+        }.items():
+            found[name] = name, x
+    right = Engine(A, C - A, w, **start())
     return {short: (name, right._replace(**x)) for short, (name, x) in found.items()}
 
 
