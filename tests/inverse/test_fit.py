@@ -109,6 +109,19 @@ def test_a_top_next_to_the_vertical() -> None:
     assert_true(fitted(t, seen), {"a": 53.8, "b": 1.461 * 11.14, "r0": 11.14})
 
 
+@pytest.mark.parametrize("names", [("theta", "phi"), ("theta", "psi")])
+@pytest.mark.parametrize("theta0", [0.0, math.pi])
+def test_a_top_that_starts_upright_with_a_rate(names: tuple[str, ...], theta0: float) -> None:
+    import fuzz_fits
+
+    truth, t = {"a": TRUTH["a"], "b": 17.0, "r0": 30.0}, np.linspace(0, 1.2, 150)
+    exact = fuzz_fits.Top(TRUTH["a"], 17.0, 30.0, theta0, 6.0, 0.0).motion(t)
+    noise = np.random.default_rng(3).normal(scale=3e-3, size=(2, 150))
+    seen = {x: np.angle(np.exp(1j * (exact[x] + y))) for x, y in zip(names, noise, strict=True)}
+    seen["theta"] = np.abs(seen["theta"])
+    assert_true(fitted(t, seen), truth)
+
+
 def test_irregular_times_with_two_rows_per_period() -> None:
     rng = np.random.default_rng(7)
     t = np.concatenate([[0], np.sort(rng.uniform(0, 20, 119))])
@@ -199,11 +212,16 @@ def test_hard_recordings_are_fitted(look: str) -> None:
     assert any(x.word == "good" for x in results), results
 
 
-def test_an_angle_of_few_rows_has_no_windows() -> None:
-    t, seen = recorded("theta", "psi", rows=400, seconds=6, noise=0.1, seed=8)
-    recording = recording_from(t, theta=seen["theta"], psi=np.where(t < 1, seen["psi"], np.nan))
+def test_windows_keep_the_time_and_have_rows_of_every_angle() -> None:
+    t = 100 + np.arange(60) / 10
+    parts = recording_from(t, theta=np.ones(60), psi=t).windows(3)
+    assert [(x.name, x.t.size, x.t[0]) for x in parts] == [
+        (f"window {i}", 20, 0) for i in (1, 2, 3)
+    ]
+    assert [x.t_start for x in parts] == pytest.approx([100, 102, 104], abs=0.11)
+    assert [x.middle for x in parts] == pytest.approx([100.95, 102.95, 104.95], abs=0.11)
     with pytest.raises(LagtopError, match="12 rows or more in each window, got 0"):
-        recording.windows(12)
+        recording_from(t, theta=np.ones(60), psi=np.where(t < 102, t, np.nan)).windows(3)
 
 
 @pytest.mark.parametrize(

@@ -84,6 +84,18 @@ def test_a_rough_input_is_improved(rough: dict[str, Any]) -> None:
     assert found.numbers["b"].std < 0.3
 
 
+def test_a_known_spin_that_is_not_recorded_keeps_its_uncertainty() -> None:
+    """Without phi nothing is said of r0, and C = b A/r0 is as uncertain; a known C improves r0."""
+    t, seen = recorded("theta", "psi", seed=9)
+    alone = fitted(t, seen, known=LAB | {"r0": "56(4)"})
+    assert not any(x.startswith("known r0") for x in alone.notes)
+    assert alone.numbers["C"].std == pytest.approx(alone.numbers["C"].value * 4 / 56, rel=0.05)
+    both = fitted(t, seen, known=LAB | {"r0": "56(4)", "C": "0.00250(3)"})
+    assert both.distances.keys() == {"C"}
+    assert both.distances["C"] == pytest.approx(0.9, abs=0.2)
+    assert_true(both, {"r0": 52.36, "C": 2.5e-3})
+
+
 def test_a_prior_lies_between_a_known_input_and_none() -> None:
     """The estimate of A is the mean of prior and data, weighted by their variances."""
     t, seen = recorded("theta", "psi", seed=10)

@@ -1,4 +1,4 @@
-"""Parts of a fit, each against numbers that are known before: starts, noise, means, decay."""
+"""Parts of a fit against numbers that are known before: starts, descent, noise, means, decay."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli.inverse.checks import CHANCE, Residuals
 from lagrange_cli.inverse.decay import decay_of
+from lagrange_cli.inverse.descent import descended
 from lagrange_cli.inverse.known import compared
 from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.signals import (
@@ -55,6 +56,20 @@ def test_some_start_is_close_to_the_top(
         found = np.concatenate([found, found * [1, -1, 1, 1, -1]])
     sizes = np.abs(exact) + 0.1 * abs(exact[1]) * np.array([0, 0, 0, 1, 1])
     assert (np.abs(found - exact) / sizes).max(axis=1).min() < close
+
+
+def test_a_bent_valley_is_followed_to_its_end() -> None:
+    """Rosenbrock's valley, with sides of 100 times its slope, from several starts at once."""
+    starts = np.array([[-1.2, 1.0], [3.0, -4.0], [-2.0, 4.0]])
+
+    def valley(x: Any, who: Any) -> Any:
+        assert x.shape[0] == np.size(who)
+        return np.stack([1 - x[..., 0], 100 * (x[..., 1] - x[..., 0] ** 2)], axis=-1)
+
+    for central in (False, True):
+        ends, chi2 = descended(valley, starts, 40, gain=1e-12, central=central)
+        assert ends == pytest.approx(1, abs=1e-5)
+        assert chi2.max() < 1e-10
 
 
 @pytest.mark.parametrize("factor", [30 / math.pi, 60, 100, 1e3, 1e4, 1e6, 1e7])
@@ -146,13 +161,3 @@ def test_a_decay_is_that_of_the_windows() -> None:
     assert found.time_std == pytest.approx(20**2 * found.rate_std)
     assert found.chi2_dof == pytest.approx(0, abs=1e-9)
     assert decay_of([window(x, 0) for x in (1, 2)]) is None
-
-
-def test_windows_keep_the_time() -> None:
-    t = 100 + np.arange(60) / 10
-    parts = recording_from(t, theta=np.ones(60), psi=t).windows(3)
-    assert [x.name for x in parts] == ["window 1", "window 2", "window 3"]
-    assert [x.t.size for x in parts] == [20, 20, 20]
-    assert [x.t_start for x in parts] == pytest.approx([100, 102, 104], abs=0.11)
-    assert [x.middle for x in parts] == pytest.approx([100.95, 102.95, 104.95], abs=0.11)
-    assert [float(x.t[0]) for x in parts] == [0, 0, 0]
