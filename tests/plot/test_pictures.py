@@ -384,6 +384,13 @@ def test_colours_stand_out_from_the_paper(look: Look) -> None:
 
 
 @pytest.mark.slow
+def test_angles_of_an_uncertain_top_have_bands(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = tmp_path / "angles.svg"
+    assert lagtop("plot", "angles", "--theta0", "30(1)", "-o", path).exit_code == 0
+    assert "bands: ±1σ" in path.read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
 def test_a_film_has_the_frames_of_its_duration(lagtop: Lagtop, tmp_path: Path) -> None:
     path = tmp_path / "top.gif"
     assert lagtop("plot", "--animate", path, "--duration", "0.4", "--dpi", 40).exit_code == 0

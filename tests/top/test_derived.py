@@ -72,6 +72,8 @@ def test_options_take_the_place_of_the_other_in_a_scene(tmp_path: Path, lagtop: 
     assert (inputs["A"], inputs["r0"]) == (35.0, 5.0)
     assert json.loads(lagtop(*asked, "--s", "1").stdout)["A"] == 5
     assert json.loads(lagtop(*asked, "--A", "9", "--r0", "-1").stdout)["A"] == 9
+    rows = lagtop("sweep", "-", "--keys", "r0", input="r0,phidot0\n1,2\n")
+    assert (rows.exit_code, "phidot0 and r0 are both given" in rows.stdout) == (1, True)
 
 
 # Words for a rate of steady precession; solver/test_digits checks the numbers
