@@ -64,11 +64,14 @@ class _File:
         if not self.table.width:
             raise DataError(f"{self.name} must hold a recording, got no cells")
         self.names = self._names(names)
-        self.quantities = self._quantities()
+        self.quantities = found_in(self.names, needs_time=reading.dt is None)
         self.time = self.quantities.get("t", _NO_TIME)
+        if self.time.says == "frames" and reading.dt is None:
+            (shown,) = self._named("t")
+            raise DataError(f"{self.name}: the column {shown} counts frames: give {arg('fps')}")
         self.clock = self._clock()
-        kept = [x for x in self.quantities.values() if self.clock is None or x is not self.time]
-        used = sorted(i for x in kept for i in x.columns)
+        kept = {x: y for x, y in self.quantities.items() if x != "t" or self.clock is None}
+        used = sorted(i for x in kept.values() for i in x.columns)
         self.numbers = self.table.numbers(used, self.names)
         if not len(self.numbers.lines):
             raise DataError(f"{self.name} must have at least one row of numbers")
@@ -76,11 +79,14 @@ class _File:
         """The numbers of each quantity as they are written."""
         self.empty: dict[str, Mask] = {}
         """Whether a part of each quantity is an empty cell, by row."""
-        for key, found in self.quantities.items():
-            if found in kept:
-                places = [*map(used.index, found.columns)]
-                self.raw[key] = self.numbers.values[:, places]
-                self.empty[key] = self._empty(key, self.numbers.empty[:, places])
+        for key, found in kept.items():
+            places = [*map(used.index, found.columns)]
+            self.raw[key], empty = self.numbers.values[:, places], self.numbers.empty[:, places]
+            if empty.all():
+                shown = ", ".join(self._named(key))
+                remedy = f"remove its columns, or skip them with _, as in {arg('columns', 't,_')}"
+                raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
+            self.empty[key] = np.asarray(empty.any(axis=1))
 
     def _names(self, names: Sequence[str] | None) -> Sequence[str]:
         """Return the names of all columns: those given, with the units of the headings."""
@@ -97,13 +103,6 @@ class _File:
         is_same = headings and len(headings) == len(names)
         return with_units_of(headings, names) if is_same and headings else names
 
-    def _quantities(self) -> dict[str, FoundQuantity]:
-        found = found_in(self.names, needs_time=self.reading.dt is None)
-        if found.get("t", _NO_TIME).says == "frames" and self.reading.dt is None:
-            shown = self.names[found["t"].columns[0]]
-            raise DataError(f"{self.name}: the column {shown} counts frames: give {arg('fps')}")
-        return found
-
     def _clock(self) -> dict[int, Any] | None:
         """Return the cells of the time by row if they are dates or have colons, else None."""
         if len(self.time.columns) != 1:
@@ -112,13 +111,6 @@ class _File:
         first = next((x for _, x in cells if x), "")
         is_clock = isinstance(first, str) and seconds_of(first) is not None
         return dict(self.table.column(self.time.columns[0])) if is_clock else None
-
-    def _empty(self, key: str, empty: Mask) -> Mask:
-        if empty.all():
-            shown = ", ".join(self._named(key))
-            remedy = f"remove its columns, or skip them with _, as in {arg('columns', 't,_')}"
-            raise DataError(f"{self.name}: {key} is empty ({shown}): {remedy}")
-        return np.asarray(empty.any(axis=1))
 
     def recording(self) -> Recording:
         """Return the recording, with the conventions that names imply."""
@@ -150,8 +142,8 @@ class _File:
         Recording(rows, reading).observed(slice(1))  # raises errors of the alignment
         used = used_in(rows, reading)
         given = {key: rows[key] for key in used}
-        given["missing"] = np.any([self.empty[x] for x in used & self.empty.keys()], axis=0)
-        given["missing"] = given["missing"].reshape(-1, 1)
+        missing = np.any([self.empty[x] for x in used & self.empty.keys()], axis=0)
+        given["missing"] = missing.reshape(-1, 1)
         read = {i for key in used & {*self.quantities} for i in self.quantities[key].columns}
         source = Source(
             utf8_path(self.path),
@@ -191,7 +183,7 @@ class _File:
             after, before = (float(begins + x) for x in (elapsed[i], elapsed[i - 1]))
             remedy = "put each recording into its own file"
             wrong = f"t must not turn back, got {after:.10g} after {before:.10g}: {remedy}"
-            raise DataError(f"{self._where(i)}: {wrong}")
+            raise self._wrong(i, wrong)
         names = self._named("t") if self.time.columns else []
         shown = f"column{'s' * (len(names) > 1)} {' and '.join(names)}, " if names else ""
         return begins, elapsed.reshape(-1, 1), f"time: {shown}{how}"
@@ -202,13 +194,18 @@ class _File:
         t = self._column() if self.time.columns else np.arange(float(len(self.numbers.lines)))
         for i in np.flatnonzero(t != np.rint(t))[:1]:
             wrong = f"t must count frames if {arg('dt')} or {arg('fps')} is given, got {t[i]:g}"
-            raise DataError(f"{self._where(i)}: {wrong}")
+            raise self._wrong(i, wrong)
         return float(t[0] * dt), (t - t[0]) * dt, f"rows {dt:g} apart"
 
     def _timed(self) -> tuple[float, Array, str]:
         """Return the first time, times since then and words for times."""
         if self.clock is not None:
-            exact = [self._moment(x) for x in self.numbers.lines]
+            exact: list[Decimal] = []
+            for i, line in enumerate(self.numbers.lines):
+                if (moment := seconds_of(cell := self.clock[line])) is None:
+                    wanted = "13:05:00.25 or 2024-05-31T13:05:00Z"
+                    raise self._wrong(i, f"the time must be like {wanted}, got {quoted(cell)}")
+                exact.append(moment)
             return 0.0, np.array([float(x - exact[0]) for x in exact]), f"a clock ({_FROM_0})"
         if len(self.time.columns) > 1:
             self._column()
@@ -230,20 +227,12 @@ class _File:
         """Return the numbers of the time.  Raises DataError for one that is not finite."""
         t = self.raw["t"]
         for i in np.flatnonzero(~np.isfinite(t).all(axis=1))[:1]:
-            raise DataError(f"{self._where(i)}: t must be a finite number, got {t[i].sum()}")
+            raise self._wrong(i, f"t must be a finite number, got {t[i].sum()}")
         return t[:, 0]
 
-    def _moment(self, line: int) -> Decimal:
-        """Return the seconds in a cell of a clock.  Raises DataError."""
-        cell = (self.clock or {})[line]
-        if (found := seconds_of(cell)) is None:
-            wrong = f"the time must be like 13:05:00.25 or 2024-05-31T13:05:00Z, got {quoted(cell)}"
-            raise DataError(f"{self.name}, {self.table.place} {line}: {wrong}")
-        return found
-
-    def _where(self, row: int) -> str:
-        """Return the name of the file and the place of a row."""
-        return f"{self.name}, {self.table.place} {self.numbers.lines[row]}"
+    def _wrong(self, row: int, what: str) -> DataError:
+        """Return an error with the name of the file and the place of a row."""
+        return self.table.wrong(self.numbers.lines[row], what)
 
     def _elapsed(self, t: Array) -> Array:
         """Return the times since the first row, from exact numbers if doubles are too coarse.
