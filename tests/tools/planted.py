@@ -37,21 +37,13 @@ COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
 
 def nodes_of(tree: ast.AST) -> Iterator[ast.AST]:
     """Yield the nodes that a fault may change, in order."""
-    for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.arguments | ast.Raise | ast.JoinedStr):
-            continue
-        yield node
-        yield from nodes_of(node)
-
-
-def typed(tree: ast.Module) -> ast.Module:
-    """Return a module without the annotations that a fault could change to no effect."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            node.returns = None
-        elif isinstance(node, ast.AnnAssign):
-            node.annotation = ast.Name("object")
-    return tree
+    for name, field in ast.iter_fields(tree):
+        for node in field if isinstance(field, list) else [field]:
+            if name in {"annotation", "returns"} or not isinstance(node, ast.AST):
+                continue
+            if not isinstance(node, ast.arguments | ast.Raise | ast.JoinedStr):
+                yield node
+                yield from nodes_of(node)
 
 
 def plant(node: ast.AST) -> bool:
@@ -73,8 +65,8 @@ def plant(node: ast.AST) -> bool:
 def planted(path: Path, which: float) -> tuple[str, str]:
     """Return the text of a module with a fault, and its line before and after."""
     source = path.read_text(encoding="utf-8")
-    count = sum(map(plant, [*nodes_of(typed(ast.parse(source)))]))
-    tree, left = typed(ast.parse(source)), int(which * count)
+    count = sum(map(plant, [*nodes_of(ast.parse(source))]))
+    tree, left = ast.parse(source), int(which * count)
     for node in nodes_of(tree):
         before = ast.unparse(node) if isinstance(node, ast.expr) else "..."
         if plant(node):
