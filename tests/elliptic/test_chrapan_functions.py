@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from functools import cache
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -148,6 +149,7 @@ def misprinted_2_5() -> Any:
     return J * total
 
 
+@cache
 def integral(m: Any, v: Any) -> Any:
     """Return the integral of (3,8) up to W, over sn/(cn dn) of the parameter."""
     sn, cn, dn = (ar.ellipfun(name, v, m=m) for name in ("sn", "cn", "dn"))
