@@ -18,7 +18,7 @@ from ..top.inputs import DECLARED
 from ..top.units import Units
 from .spread import Spread, Uncertainty
 
-NO_SPREAD = "motions a standard deviation away lack it, or it is beyond the doubles"
+NO_SPREAD = "motions one standard deviation away lack it, or it is beyond the range of doubles"
 
 
 def spread_of(found: Given, motion: Motion) -> Spread:

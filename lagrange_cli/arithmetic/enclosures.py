@@ -348,7 +348,7 @@ def rounded(what: str, value: Exact, digits: int | None, remedy: str = "change t
     if math.isinf(found) or (value and not found):
         bound = "within 1.8e308" if found else "0 or at least 5e-324"
         shown = _decimal(value, _SHORT)
-        raise OutOfRangeError(f"{what} must be {bound} in size, got {shown:.3e}: {remedy}")
+        raise OutOfRangeError(f"{what} must be {bound} in magnitude, got {shown:.3e}: {remedy}")
     return found
 
 

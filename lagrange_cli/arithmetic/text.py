@@ -108,9 +108,9 @@ def parse_number(text: str) -> Fraction:
         raise LagtopError(f"must be a finite decimal number, got {quoted(text)}{_remedy(text)}")
     nearest = float(text)
     if math.isinf(nearest):
-        raise LagtopError(f"must be at most 1.8e308 in size, got {shortened(text)}")
+        raise LagtopError(f"must be at most 1.8e308 in magnitude, got {shortened(text)}")
     if nearest == 0 and set(text.lower().partition("e")[0]) & set("123456789"):
-        raise LagtopError(f"must be 0 or at least 5e-324 in size, got {shortened(text)}")
+        raise LagtopError(f"must be 0 or at least 5e-324 in magnitude, got {shortened(text)}")
     return Fraction(text) if nearest else Fraction(0)  # 0e999999999 would be 0 times 10^999999999
 
 

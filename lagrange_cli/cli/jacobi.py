@@ -67,7 +67,7 @@ def write_functions(rows: Rows, count: int, out: Output) -> None:
 @opt.option("--k", type=MODULUS, help="Modulus, real or complex (0.8, 2, 0.8i, 1+2i).")
 @opt.option("--k-prime", type=MODULUS, help="Complementary modulus k', for k close to 1.")
 @opt.option("--m", type=MODULUS, help="Parameter m = k^2, any real or complex number.")
-@opt.option("--nome", type=MODULUS, help="Nome q = exp(-pi K'/K), below 1 in size.")
+@opt.option("--nome", type=MODULUS, help="Nome q = exp(-pi K'/K), below 1 in magnitude.")
 @opt.option("--modular-angle", type=MODULUS, help="Modular angle arcsin k, 0 to 90 degrees.")
 @opt.option(
     "--u",
@@ -167,7 +167,9 @@ def jacobi_command(
 def _families(functions: list[str] | None, given: GivenModulus) -> tuple[str, ...]:
     """Return the requested functions of u in the order of the table."""
     if "Z" in (functions or []):
-        raise LagtopError("--functions must not contain Z: Jacobi's Z(u) is zeta01 of zeta")
+        raise LagtopError(
+            "--functions must not contain Z: use zeta, whose column zeta01 is Jacobi's Z(u)"
+        )
     default = ["sn", "cn", "dn"] if given.kind is Kind.COMPLEX else ["am"]
     named = check_names("functions", functions or default, FAMILIES)
     return tuple(name for name in FAMILIES if name in named)

@@ -373,7 +373,7 @@ def _check_output(path: str, given: Mapping[str, Any]) -> None:
     found = [x for y in given.values() for x in (y if isinstance(y, list | tuple) else [y])]
     for x in found if os.path.isfile(path) else ():  # a scene is in the tuple of the top
         if isinstance(x, str) and os.path.exists(x) and os.path.samefile(x, path):
-            raise LagtopError(f"-o must not be a file that is read, got {quoted(path)}")
+            raise LagtopError(f"-o must not overwrite an input file, got {quoted(path)}")
 
 
 def with_mark(out: Output, mark: str, *, reads: bool = False) -> Output:

@@ -66,7 +66,7 @@ def table_command(
     for name, value in {"t_max": t_max, "t_min": t_min, "n": n, "dt": dt}.items():
         opt.exclude(**{"times": times, name: value})
     if top.scene == times == "-":
-        raise LagtopError("standard input holds the scene or --times, not both")
+        raise LagtopError("standard input can be the scene or --times, not both")
     given = {"t_min": t_min, "t_max": t_max, "dt": dt}
     found, proved = top.given(**given), digits is not None or certify
     if found.stds and proved:

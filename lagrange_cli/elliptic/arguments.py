@@ -116,8 +116,8 @@ def parse_sum(text: str, *, has_quarters: bool = True) -> ExactComplex:
         below, unit = parse_number(divisor or "1"), i or K
         is_read = unit or (number and not divisor)
         if not (is_read and below) or (K and not has_quarters):
-            multiples = ", or with K and K' as K/2-0.3i or K+iK'" if has_quarters else ""
-            wanted = f"must be a finite number, complex as 0.3+0.7i{multiples}"
+            examples = "2, 0.3+0.7i, K/2-0.3i or K+iK'" if has_quarters else "2 or 0.3+0.7i"
+            wanted = f"must be a finite number, such as {examples}"
             raise LagtopError(f"{wanted}, got {quoted(text)}")
         place = 2 * ["", "K", "K'"].index(K or "") + bool(i)
         parts[place] += parse_number(f"{sign}{number or 1}") / below
@@ -141,7 +141,7 @@ def parse_small(text: str) -> ExactComplex:
         number = Decimal(text)
         if not number or number.adjusted() >= _LEAST_EXPONENT:
             return ExactComplex(Fraction(number) if number else Fraction(0))
-    raise LagtopError(f"must be 0 or at least 1e{_LEAST_EXPONENT} in size, got {quoted(text)}")
+    raise LagtopError(f"must be 0 or at least 1e{_LEAST_EXPONENT} in magnitude, got {quoted(text)}")
 
 
 def parse_arguments(text: str) -> Arguments:

@@ -77,7 +77,7 @@ class FunctionRequest(NamedTuple):
         if asked & {*INVERSES} and (u.has_quarters or not self.has_real_u):
             raise LagtopError("u must be real, without K, for inverse functions", "u")
         if asked & {*THETAS} and u.has_quarters:
-            wanted = "must not contain K for theta1 to theta4: theta is of u = 2Kz/pi"
+            wanted = "must be z in radians, without K, for theta1 to theta4: theta takes u = 2Kz/pi"
             raise LagtopError(f"u {wanted}", "u")
         for name, x in (("u", u), ("param", self.parameter)):
             has_K, has_K_prime = x[2] or x[3], x[4] or x[5]

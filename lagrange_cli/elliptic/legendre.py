@@ -277,7 +277,7 @@ def constants_record(
 def _check_third(given: GivenModulus, n: Fraction | None) -> None:
     """Raise LagtopError for Pi of a modulus with a complex square."""
     if n is not None and given.kind is Kind.COMPLEX:
-        raise LagtopError("n needs a real k^2: Pi is not computed for a complex one", "n")
+        raise LagtopError("n needs a real k^2: Pi is not computed for complex k^2", "n")
 
 
 def constants_of(modulus: Modulus, units: Units = DEGREES) -> dict[str, acb | None]:

@@ -84,10 +84,10 @@ class GivenModulus(NamedTuple):
         if name != "nome":
             return
         if size >= 1:
-            raise LagtopError(f"nome must be below 1 in size, got {self.value}", name)
+            raise LagtopError(f"nome must be below 1 in magnitude, got {self.value}", name)
         if size > (1 - _LEAST_BELOW_1) ** 2:
             raise LagtopError(
-                "nome must be at most 1 - 1e-17 in size: k' is too small beyond", name
+                "nome must be at most 1 - 1e-17 in magnitude: beyond that, k' is too small", name
             )
 
     def check_principal(self) -> None:

@@ -418,7 +418,7 @@ def split_row(text: str, delimiter: str) -> list[str]:
     try:
         return [x.strip() for x in next(csv.reader([text.strip(" ")], **form))]
     except csv.Error as error:
-        wrong, most = f"end with its quote, and on its line: {error}", csv.field_size_limit()
+        wrong, most = f"end with a quote on the same line: {error}", csv.field_size_limit()
         if max(map(len, text.split('"'))) > most:
             wrong = f"have at most {most} characters"
         raise LagtopError(f"a quoted cell must {wrong}") from None

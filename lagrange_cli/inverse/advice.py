@@ -288,7 +288,7 @@ class Advice:
                 again = f"another motion begins at t = {rest.t_start:.4g}"
                 parts = f"fit both parts with {arg('t_max')} and {arg('t_min')}"
                 yield Reason(Kind.READING, f"{again}: {parts}")
-            begins = f"; the residuals begin at t = {rest.t_start:.4g}" * bool(kept.any())
+            begins = f"; large residuals begin at t = {rest.t_start:.4g}" * bool(kept.any())
         known = (
             "no known misreading" if self.is_early else "none of the misreadings that were tried"
         )

@@ -247,7 +247,7 @@ class Outcome(HasRecord):
     def untested(self) -> str:
         """What the recording cannot show, or empty."""
         if self.inputs is None:
-            return "without a nutation, no machine beside a Lagrange top can be seen"
+            return "without nutation, no other machine and no fault of the data can be detected"
         return self.neighbours.line if self.neighbours else ""
 
     @property

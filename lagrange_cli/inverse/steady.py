@@ -105,7 +105,8 @@ def steady_outcome(
         recording, means, whole, is_slow = _direction(recording, means, tilt, notes)
         is_sure |= is_slow
     elif "phi" in means:
-        notes.append(Message(f"without the tilt neither r0 nor C follows: give {arg('theta0')}"))
+        unknown = "without the tilt, neither r0 nor C is determined"
+        notes.append(Message(f"{unknown}: give {arg('theta0')}"))
     numbers: dict[str, Number] = {}
     for name, key in (
         ("theta", "mean_tilt_rad"),

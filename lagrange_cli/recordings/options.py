@@ -100,7 +100,7 @@ class Reading(NamedTuple):
         found = cls(align=Alignment.of(align), **given)
         if fps is not None:
             if found.dt is not None:
-                raise LagtopError(f"fps and {arg('dt')} exclude each other: give one", "fps")
+                raise LagtopError(f"fps cannot be used with {arg('dt')}: give one", "fps")
             found = found._replace(dt=1 / _positive("fps", fps))
         elif found.dt is not None:
             _positive("dt", found.dt)

@@ -150,7 +150,7 @@ def recording_of(t: ArrayLike | None, arguments: Mapping[str, Any]) -> Recording
     times, rows["missing"] = rows["t"][:, 0], np.zeros_like(rows["t"])
     steps = np.diff(times)
     if not times.size or not ((steps >= 0).all() or (steps <= 0).all()):
-        raise LagtopError("t must have times that increase, or decrease, from row to row", "t")
+        raise LagtopError("t must hold at least one time, and must not turn back", "t")
     for key, x in given.items():
         if isinstance(x, np.ma.MaskedArray):
             rows["missing"] += np.ma.getmaskarray(x).reshape(rows[key].shape).any(1, keepdims=True)

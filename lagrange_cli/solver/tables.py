@@ -133,7 +133,7 @@ def _proved(
     beyond = np.argwhere(np.isinf(found))
     if beyond.size:
         name, time = [*table.chosen][beyond[0, 0]], t[beyond[0, 1]]
-        raise OutOfRangeError(f"{name} at t = {time} must be within 1.8e308 in size")
+        raise OutOfRangeError(f"{name} at t = {time} must be within 1.8e308 in magnitude")
     return found
 
 

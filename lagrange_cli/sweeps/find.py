@@ -124,7 +124,7 @@ def search_of(
     is_steady = given.inputs.get("psidot0") in STEADY_WORDS
     if not is_steady and steady & {(x.key, x.value) for x in found if x.relation == "="}:
         remedy = f"use {arg('psidot0', 'steady')}"
-        raise LagtopError(f"a steady precession is not found by a scan: {remedy}")
+        raise LagtopError(f"a scan does not find steady precession: {remedy}")
     goals = [x for x in found if x.relation == "=" and x.key not in WORDS]
     if not goals and len(spans) == 1:
         goals = [x for x in found if x.key in WORDS][:1]

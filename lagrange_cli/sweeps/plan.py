@@ -139,7 +139,7 @@ def plan(
         sweep = Sweep(chosen, ranges, shared, chosen, units, fmt, found.is_body, conditions)
         return sweep, enumerate(grid.blocks(blocks * BLOCK_ROWS)), grid.size, found
     if ranges := _ranges({name: x.number for name, x in axes.items()}):
-        raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
+        raise LagtopError(f"a file of tops takes no list or range, got one for {min(ranges)}")
     computed = {*column_keys(), *column_keys(RADIANS), *chosen, "error"}
     source = read_tops(path, computed, decimal)
     found = source.shared(axes, scene, units=have_units)

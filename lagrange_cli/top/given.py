@@ -82,16 +82,21 @@ class Given(NamedTuple):
                 numbers[key] = x if x in STEADY_WORDS else checked_double(key, x)
             top = Top(**numbers)
             if self.is_body:
-                top.check_body()
+                self._check_body(top)
             return top
         except LagtopError as error:
-            moments = [name for name in ("A", "C") if name in self.missing]
-            if moments and error.key in {"A", "C"}:
-                which = f"{' and '.join(moments)} of the worked example"
-                error = LagtopError(
-                    f"{error.marked} (with {which}: give the whole body)", error.key
-                )
             raise self.placed(error) from None
+
+    def _check_body(self, top: Top) -> None:
+        """Raise LagtopError for C > 2A; it names the moment that is a default."""
+        try:
+            top.check_body()
+        except LagtopError as error:
+            moment = next((name for name in ("A", "C") if name in self.missing), None)
+            if moment is None:
+                raise
+            which = f"{moment} defaults to the worked example: give m, A, C, s and g"
+            raise LagtopError(f"{error.marked}; {which}", error.key) from None
 
     def placed(self, error: LagtopError) -> LagtopError:
         """Return an error with the file and the line of its input, unless an option gives it."""
@@ -160,9 +165,10 @@ def have_units(values: Mapping[str, Value], *, asked: bool = False) -> bool:
     united = [name for name, x in named.items() if x.unit]
     for name, x in named.items() if united or asked else ():
         if name in DECLARED and not (x.unit or _is_zero(x.number)):
-            why = f"as the input {united[0]} has" if united else "as a time or a condition has"
+            other = f"the input {united[0]}" if united else "a time or a condition"
             example = EXAMPLES[DECLARED[name].unit]
-            raise LagtopError(f"{name} must have a unit such as {example}, {why}, got none", name)
+            wanted = f"a unit such as {example}, because {other} has one"
+            raise LagtopError(f"{name} must have {wanted}, got none", name)
     return bool(united) or asked
 
 

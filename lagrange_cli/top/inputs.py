@@ -164,4 +164,4 @@ def checked_double(key: str, value: Real) -> float:
     except (TypeError, ValueError):
         raise LagtopError(f"{key} must be a real number, got {quoted(value)}", key) from None
     except OverflowError:
-        raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None
+        raise LagtopError(f"{key} must be at most 1.8e308 in magnitude", key) from None

@@ -154,6 +154,6 @@ def check_reach(name: str, points: Points, limit: float) -> None:
     if abs(farthest) > limit:
         wanted, remedy = f"within 2^50 periods = {limit:.3g} of 0", f"or use {arg('digits', 'N')}"
         if not limit:
-            wanted = "0, because a period is below all doubles"
+            wanted = "0, because a period is too small for a double"
             remedy = f"with {arg('digits', 'N')}, give it in units of K: {farthest:g}K"
         raise LagtopError(f"{name} must be {wanted}, got {farthest} ({remedy})", name)

@@ -105,7 +105,7 @@ def _value(key: str, value: object) -> Value:
     try:
         text = str(value)
     except ValueError:  # an integer of thousands of digits, in hexadecimal digits
-        raise LagtopError(f"{key} must be at most 1.8e308 in size") from None
+        raise LagtopError(f"{key} must be at most 1.8e308 in magnitude") from None
     if isinstance(value, bool) or not isinstance(value, int | str):
         raise LagtopError(f"{key} must be a finite number, got {shortened(text)}")
     if not is_text and key == TILT:

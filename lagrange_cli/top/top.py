@@ -34,8 +34,9 @@ _EPS, _DEGREE = Fraction(1, 1 << 52), math.pi / 180
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
 _LARGEST = 1e100
 _UNITS = "choose other units"
-_OTHER_END = {"s": "a low centre of mass", "g": "upward gravity"}
+_OTHER_END = {"s": "the centre of mass is beyond the pivot", "g": "gravity acts upwards"}
 """Causes of a negative input that turning the top over describes."""
+_TURNED_OVER = "with 180 - theta0, -r0 and -thetadot0"
 
 
 class BodyAndStart(NamedTuple):
@@ -241,18 +242,19 @@ def _checked(name: str, value: Any) -> Real:
     if not math.isfinite(nearest):
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
     if value and not nearest and not isinstance(value, Fraction):
-        raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
+        raise LagtopError(f"{name} must be 0 or at least 5e-324 in magnitude, got {value!s}", name)
     number: Real = unrounded(value, nearest)
-    _require(-_LARGEST <= number <= _LARGEST, name, "within 1e100 in size", number, _UNITS)
+    _require(-_LARGEST <= number <= _LARGEST, name, "within 1e100 in magnitude", number, _UNITS)
     bound = DECLARED[name].bound if name in DECLARED else ""
     if bound.startswith("positive"):
         _require(number > 0, name, "> 0", number)
         _require(number >= _SMALLEST, name, ">= 1e-100", number, _UNITS)
     if bound == "0 or more":
-        remedy = f"for {_OTHER_END[name]} use 180 - theta0 and -r0" if name in _OTHER_END else ""
+        is_turned = name in _OTHER_END
+        remedy = f"if {_OTHER_END[name]}, use |{name}| {_TURNED_OVER}" if is_turned else ""
         _require(number >= 0, name, ">= 0", number, remedy)
     if bound.startswith("not 0"):
-        _require(not -_SMALLEST < number < _SMALLEST, name, "1e-100 or more in size", number)
+        _require(not -_SMALLEST < number < _SMALLEST, name, "1e-100 or more in magnitude", number)
     if name.startswith(f"{TILT}_"):
         exact: Fraction = Fraction(number)
         in_degrees = name.endswith("deg")

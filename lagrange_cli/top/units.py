@@ -126,7 +126,7 @@ _FACTOR = re.compile(rf"\s*([*·/]?)\s*({_NAME})\s*(?:(?:\*\*|\^)?\s*(-?\d)(?!\d
 _ASKED = {
     "U": "write rpm or turn/s",
     "Hz": "turns or radians per second? write rpm, turn/s or rad/s",
-    "gr": "grain or gram? write g",
+    "gr": "grains or grams? write g for grams",
 }
 
 

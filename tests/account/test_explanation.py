@@ -170,4 +170,4 @@ def test_small_differences_are_named_in_order() -> None:
 def test_a_number_beyond_the_doubles_has_digits_in_solve(lagtop: Lagtop) -> None:
     """`explain` itself has no --digits."""
     result = lagtop("explain", "precession_rate_elementary", "--g", 5e-324)
-    assert result.stderr.endswith(" in size, got 3.593e-326: use solve --digits N\n")
+    assert result.stderr.endswith(" in magnitude, got 3.593e-326: use solve --digits N\n")

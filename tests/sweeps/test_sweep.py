@@ -153,7 +153,7 @@ def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
         ("--r0 500(5)", 2, "--r0 must have no uncertainty in this command, got '500(5)'"),
         ("nowhere.toml", 65, "nowhere.toml: No such file or directory"),
         ("a.csv b.csv", 2, "a sweep takes one file of tops, got a.csv b.csv"),
-        ("- --m 1,2 --psidot0 steady", 2, "a range of m and a file of tops exclude each other"),
+        ("- --m 1,2 --psidot0 steady", 2, "a file of tops takes no list or range, got one for m"),
         ("--jobs 2 --dask tcp://127.0.0.1:9", 2, "use --jobs or --dask, not both"),
     ],
 )
