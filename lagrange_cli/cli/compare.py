@@ -59,9 +59,9 @@ def compare_command(
 ) -> None:
     """Compare trajectories with the exact motion.
 
-    A trajectory is a file (CSV, text, JSON or Parquet), or - for standard input.  Its columns are
-    recognised by name, such as t, theta, axis, quaternion or matrix.  Angles are in degrees unless
-    their names or --rad say otherwise; errors are in radians.
+    A trajectory is a file (CSV, text, JSON, Parquet or .mat), or - for standard input.  Its
+    columns are recognised by name, such as t, theta, axis, quaternion or matrix.  Angles are in
+    degrees unless their names or --rad say otherwise; errors are in radians.
 
     The exit code is 1 unless the verdict on every trajectory is fine.
     """

@@ -42,10 +42,12 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
 @opt.option(
     "--sigma",
     type=opt.Parsed("SIGMA", _parse_sigma),
-    help="Standard deviation of all angles, or theta=0.3,psi=0.5.  [default: estimated from the "
+    help="Standard deviation of every angle, or theta=0.3,psi=0.5.  [default: estimated from the "
     "residuals]",
 )
-@opt.option("--window", type=opt.count(), help="Fit N equal windows, and the decay of the spin.")
+@opt.option(
+    "--window", type=opt.count(), help="Fit N equal windows separately, and the decay of the spin."
+)
 @opt.recording
 @opt.plot
 @opt.output("table", extensions=["toml"])

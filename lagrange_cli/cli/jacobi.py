@@ -103,7 +103,7 @@ def jacobi_command(
 ) -> None:
     """Compute elliptic integrals, elliptic and theta functions.
 
-    Give the modulus by exactly one of --k, --k-prime, --m, --nome and --modular-angle.  k and -k
+    Give the modulus with exactly one of --k, --k-prime, --m, --nome and --modular-angle.  k and -k
     have the same values.  Without --u and --phi, the constants of the modulus are printed.
 
     \b

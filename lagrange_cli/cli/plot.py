@@ -48,7 +48,9 @@ PAGE_DPI, FILM_DPI = 150.0, 100.0
     "--y", metavar="RANGE", help="Vertical axis of `map`.  [default: theta0=1:179:100 in deg]"
 )
 @opt.option(
-    "--camera", metavar="AZ,EL", help="Azimuth and elevation in deg, or rad.  [default: in front]"
+    "--camera",
+    metavar="AZ,EL",
+    help="Azimuth and elevation, in deg (rad with --rad).  [default: in front]",
 )
 @opt.option("--title", metavar="TEXT", help="Title of the picture, or '' for none.")
 @opt.option(
@@ -88,7 +90,7 @@ def plot_command(
     map     a key of the record over two inputs
     all     sphere, angles, cubic and phase on one sheet (default)
 
-    Several scenes fill a slide.
+    Several scenes share one picture, at one scale.
     """
     expanded = {kind: (kind,) for kind in KINDS} | SHEET
     named = [word for word in words if word in expanded] or [*SHEET]

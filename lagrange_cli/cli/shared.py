@@ -98,7 +98,7 @@ TIME = values()
 _DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
 
 option = click.option
-rad = option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
+rad = option("--rad", is_flag=True, help="Use radians for all angles, input and output.")
 certify = option(
     "--certify",
     is_flag=True,
@@ -110,13 +110,15 @@ plot = option("--plot", metavar="FILE", help=f"Also draw the report: FILE{listed
 
 def decimal(*, reads: bool = True, writes: bool = False) -> Callable[[F], F]:
     """Declare --decimal, the mark of a file that is read, of CSV that is written, or of both."""
-    files = ["of the file"] * reads + ["of CSV that is written (with semicolons)"] * writes
+    files = ["of the input file"] * reads + [
+        "of CSV output (comma: cells have semicolons)"
+    ] * writes
     return option(
         "--decimal",
         metavar="MARK",
         type=click.Choice(["point", "comma", ".", ","]),
         callback=lambda _, __, mark: {None: "", "point": ".", "comma": ","}.get(mark, mark),
-        help=f"Decimal mark {' and '.join(files)}: point or comma."
+        help=f"Decimal mark {' and '.join(files)}: point or {comma}."
         + "  [default: detected]" * reads,
     )
 
@@ -126,13 +128,13 @@ columns | NAME,... |
     | Names of all columns; axis, quaternion and matrix stand for all of their parts, _ skips a
     column.  A name may have a unit: 't [ms]'.
 align | WORD,... | | Frames of the data: up=y (y points up), axis=y (y is the figure axis), left
-    (left-handed), conjugate (attitude from space to body).  To begin in the first row: start
-    (spin and precession), time.
+    (left-handed), conjugate (attitude from space to body).  To count from the first row: start
+    (spin and precession), time (t).
 quaternion_order | ORDER | wxyz xyzw
     | Order of a quaternion whose names do not show it: wxyz or xyzw.
 euler_sequence | SEQ | xyz | Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.
 rates_frame | FRAME | body space | Frame of the angular velocity: body or space.
-dt | X | | Time between two rows without a time, or between two frames.
+dt | X | | Time between rows if the file has no times, or between frames if it counts frames.
 fps | N | | Frames per unit of time: 1/dt.
 t_min | X | | First time to read.
 t_max | X | | Last time to read.

@@ -38,7 +38,7 @@ from .app import complain
 @opt.option(
     "--samples",
     type=opt.count(10**5),
-    help="Take uncertainties from N random tops (normal inputs).",
+    help="Estimate uncertainties from N random tops (normally distributed inputs).",
 )
 @opt.output("table")
 def solve_command(

@@ -74,7 +74,7 @@ def _parse_jobs(text: str) -> int:
     "--jobs",
     metavar="N|auto",
     type=opt.Parsed("N", _parse_jobs),
-    help="Processes; auto: one per core.",
+    help="Number of processes; auto: one per core.",
 )
 @opt.option("--parts", metavar="DIR", help="Write one file per part into this folder.")
 @opt.option("--shard", type=opt.Parsed("I/N", _parse_shard), help="Compute parts I, I + N, ...")

@@ -102,7 +102,7 @@ def estimated(top: Top, seen: Estimate) -> list[Cause]:
     ):
         if not ratio or not 0 < ratio < math.inf:
             continue
-        said = f"{percent(ratio)} {'more' if ratio > 1 else 'less'}"
+        said = f"{percent(ratio)} {'larger' if ratio > 1 else 'smaller'} than given"
         said = said if 0.5 < ratio < 2 else f"wrong by a factor of {ratio:.4g}"
         with suppress(LagtopError):
             other = Top(**inputs | {key: inputs[key] * ratio})

@@ -182,7 +182,9 @@ def _meaning(name: str, known: Known, pairs: Mapping[str, tuple[float, ...]]) ->
     declared = shown_keys(Units(radians=True), requested=True)
     if name in declared and name not in _MEANINGS:
         return declared[name].meaning
-    return _MEANINGS.get(name, "only this product is known" if set(name) & set("*/") else "")
+    return _MEANINGS.get(
+        name, "only this combination is determined" if set(name) & set("*/") else ""
+    )
 
 
 def _inputs(
