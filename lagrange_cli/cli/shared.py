@@ -110,9 +110,8 @@ plot = option("--plot", metavar="FILE", help=f"Also draw the report: FILE{listed
 
 def decimal(*, reads: bool = True, writes: bool = False) -> Callable[[F], F]:
     """Declare --decimal, the mark of a file that is read, of CSV that is written, or of both."""
-    files = ["of the input file"] * reads + [
-        "of CSV output (comma: cells have semicolons)"
-    ] * writes
+    files = ["of the input file"] * reads + ["of CSV output"] * writes
+    comma = "comma (CSV then has semicolons)" if writes else "comma"
     return option(
         "--decimal",
         metavar="MARK",
