@@ -114,7 +114,7 @@ def sweep_command(
     repeat the command to resume a run that was killed.
     """
     from ..sweeps.parts import Parts, digest_of
-    from ..sweeps.plan import Part, check, noted, plan
+    from ..sweeps.plan import BLOCK_ROWS, Part, check, noted, plan
     from ..sweeps.workers import in_order
 
     opt.exclude(jobs=jobs, dask=dask)
@@ -148,7 +148,8 @@ def sweep_command(
         total = size // every or None
         shown = with_progress(noted(computed, done), "tops", total, lambda part: part.size)
         if folder:
-            _write_parts(folder, shown, done)
+            parts_of_all = -(-size // (BLOCK_ROWS * how["blocks"]))
+            _write_parts(folder, shown, done, len(range(first - 1, parts_of_all, every)))
         else:
             headings = _headings(sweep.header, sweep.units, out)
             out.blocks(sweep.header, (part.text for part in shown), headings)
@@ -164,13 +165,16 @@ def sweep_command(
         complain(f"Warning: no top satisfies {' and '.join(map(str, sweep.where))}")
 
 
-def _write_parts(folder: Parts, parts: Iterable[Part], done: Sequence[Part]) -> None:
-    """Write parts.  If a process or a cluster is lost, the error counts the parts that are done."""
+def _write_parts(folder: Parts, parts: Iterable[Part], done: Sequence[Part], count: int) -> None:
+    """Write parts.  If a process or a cluster is lost, the error counts the parts that are done.
+
+    The number of all parts is 0 if it is not known.
+    """
     try:
         folder.write(parts)
     except UnavailableError as error:
-        remedy = f"{len(done)} parts are done: repeat the command"
-        raise UnavailableError(f"{error}; {remedy}") from None
+        found = f"{len(done)} of {count}" if count else f"{len(done)}"
+        raise UnavailableError(f"{error}; {found} parts are done: repeat the command") from None
 
 
 def _headings(names: Sequence[str], units: Units, out: Output) -> Sequence[str]:

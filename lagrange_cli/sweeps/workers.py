@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from threading import Thread, local
 from typing import Any, TypeVar
 
@@ -29,8 +30,9 @@ _SIGNALS_TAKE = 0.2
 
 _T = TypeVar("_T")
 P = TypeVar("P")
-Submit = Callable[[Callable[[Any], Any], Any], Callable[[], Any]]
-"""A function that hands out work and an item, and returns a function that waits for the result."""
+Shared = tuple[Callable[[Callable[[Any], Any], Any], Any], int, Callable[[], object]]
+"""A function that hands out work and an item and returns a future, the number of processes, and a
+function that raises UnavailableError if they no longer answer."""
 
 
 def in_order(
@@ -49,33 +51,45 @@ def in_order(
     if jobs == 1 and address is None:
         yield from map(work, items)
         return
-    waiting: deque[Callable[[], P]] = deque()
+    futures = deque[Any]()
     shared = _processes(jobs) if address is None else _cluster(address, warn)
-    with shared as (submit, count):
+    with shared as (submit, count, check):
         for item in items:
-            waiting.append(_unless_lost(submit, work, item))
-            if len(waiting) >= _AHEAD * count:
-                yield _unless_lost(waiting.popleft())
-        while waiting:
-            yield _unless_lost(waiting.popleft())
+            futures.append(_unless_lost(submit, work, item))
+            if len(futures) >= _AHEAD * count:
+                yield _result(futures.popleft(), check)
+        while futures:
+            yield _result(futures.popleft(), check)
+
+
+def _result(future: Any, check: Callable[[], object]) -> Any:
+    """Return the result of some work; `check` raises UnavailableError if nobody does it."""
+    while True:
+        with suppress(TimeoutError):
+            return _unless_lost(future.result, _PATIENCE / 10)
+        _unless_lost(check)
 
 
 def _unless_lost(call: Callable[..., P], *arguments: Any) -> P:
     """Return the result of a call.  Raises UnavailableError if a process or the cluster is lost."""
     try:
         return call(*arguments)
+    except TimeoutError:
+        raise
     except Exception as error:
         is_lost = isinstance(error, EOFError | CancelledError | OSError)
         if not (is_lost or type(error).__module__.startswith("distributed")):
             raise
         time.sleep(_SIGNALS_TAKE)  # a signal to all processes is raised here, as the cause
+        if "connection" in str(error):
+            raise UnavailableError("the connection to the scheduler was lost") from None
         raise UnavailableError(
             f"a process that shared the work was lost (killed, or out of memory): {error}"
         ) from None
 
 
 @contextmanager
-def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
+def _processes(jobs: int) -> Iterator[Shared]:
     """Yield a function that hands work to other Python processes, which are killed at the end.
 
     Each belongs to a thread, which starts it, sends it work through a pipe and waits for the
@@ -98,7 +112,7 @@ def _processes(jobs: int) -> Iterator[tuple[Submit, int]]:
 
     threads = ThreadPoolExecutor(jobs)
     try:
-        yield lambda work, item: threads.submit(ask, work, item).result, jobs
+        yield lambda work, item: threads.submit(ask, work, item), jobs, int
     finally:
         threads.shutdown(wait=False, cancel_futures=True)
         for process in processes:
@@ -145,8 +159,8 @@ def serve() -> None:
 
 
 @contextmanager
-def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit, int]]:
-    """Yield a function that hands work to a Dask cluster, and the number of its threads.
+def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[Shared]:
+    """Yield a function that hands work to a Dask cluster, the number of its threads, and a check.
 
     dask itself waits without end for a stopped process, and for work whose workers are gone.
     Raises LagtopError for an invalid address, and UnavailableError if the cluster does not answer
@@ -178,24 +192,15 @@ def _cluster(address: str, warn: Callable[[str], None]) -> Iterator[tuple[Submit
     if any(x.category.__name__ == "VersionMismatchWarning" for x in found):
         warn("the cluster has other versions of Python packages: last digits may differ")
 
-    def submit(work: Callable[[Any], Any], item: Any) -> Callable[[], Any]:
-        future = client.submit(work, item, pure=False)
-        return lambda: _result(future, client, address)
+    def check() -> None:
+        _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
+        _answer(address, lambda: client.run(int))
 
     try:
-        yield submit, threads
+        yield partial(client.submit, pure=False), threads, check
     finally:
         with suppress(Exception):  # report the error that ended the sweep, not one of closing
             _answer(address, lambda: client.close(timeout=1), seconds=2.0)
-
-
-def _result(future: Any, client: Any, address: str) -> Any:
-    """Return the result of some work.  Raises UnavailableError if workers no longer answer."""
-    while True:
-        with suppress(TimeoutError):
-            return future.result(_PATIENCE / 10)
-        _answer(address, lambda: client.wait_for_workers(1, timeout=_PATIENCE))
-        _answer(address, lambda: client.run(int))
 
 
 def _answer(

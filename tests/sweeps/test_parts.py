@@ -214,7 +214,7 @@ def test_a_lost_worker_leaves_parts_that_count(
         yield from map(work, islice(blocks, 2))
         raise UnavailableError("a process was lost")
 
-    said = "a process was lost; 2 parts are done: repeat the command"
+    said = "a process was lost; 2 of 3 parts are done: repeat the command"
     with monkeypatch.context() as patch:
         patch.setattr("lagrange_cli.sweeps.workers.in_order", lost)
         assert_one_line(lagtop(*GRID, "--parts", tmp_path), 69, said)
