@@ -27,8 +27,10 @@ from uncertainties import ufloat
 
 from lagrange_cli.arithmetic.enclosures import text_of
 from lagrange_cli.cli.app import main
+from lagrange_cli.elliptic.arguments import parse_arguments
 from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.names import check_names
+from lagrange_cli.recordings.quantities import quantities_in
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top import values
 from lagrange_cli.top.units import Units
@@ -90,9 +92,24 @@ def uncertain(text: str) -> str:
     return f"{value.number} +/- {value.std}"
 
 
+def argument(text: str) -> str:
+    """Return the real and imaginary part of an argument, and its multiples of K, iK, K', iK'."""
+    arguments = parse_arguments(text)
+    [parts] = arguments.numbers(20)
+    assert arguments.has_quarters is any(parts[2:])
+    return " ".join(map(str, parts))
+
+
+def columns_known(header: str) -> str:
+    """Return the quantities that are known by names of columns, but the time, and their places."""
+    found = sorted((name, of.columns) for name, of in quantities_in(header.split()).items())
+    return ", ".join(f"{name} {' '.join(map(str, at))}" for name, at in found if name != "t")
+
+
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
 NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
 NAMES |= {x.__name__: x for x in (sentence, unit, numbers, digits, row, uncertain)}
+NAMES |= {x.__name__: x for x in (argument, columns_known)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 
 

@@ -104,17 +104,6 @@ def test_the_table_says_whether_a_sleeping_top_is_stable(lagtop: Lagtop) -> None
         assert shown.splitlines()[-2:] == ["", solve(Top(theta0_deg=0, r0=r0)).remark]
 
 
-SAMPLE_REGIMES = {
-    **dict.fromkeys(("hibbeler-fast", "hibbeler-slow", "steady-top"), "steady precession"),
-    **dict.fromkeys(("plane-pendulum", "spherical-pendulum"), "no spin"),
-    "hanging-still": "hanging",
-    "sleeping-top": "sleeping",
-    "torque-free": "torque-free",
-    "whittaker-71": "separatrix",
-}
-"""The regimes of shipped scenes that are not regular."""
-
-
 # table
 
 
@@ -279,7 +268,6 @@ def test_scenes_are_found_by_name(
     assert [row["name"] for row in listed] == sorted(by_file)
     for name, record in by_file.items():
         assert solved(name) == record
-        assert record["regime"] == SAMPLE_REGIMES.get(name, "regular")
         assert lagtop("table", name, "--n", "1").exit_code == 0
     unknown = lagtop("solve", "simo-wong")
     assert_one_line(

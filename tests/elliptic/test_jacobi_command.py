@@ -12,7 +12,7 @@ import pytest
 from conftest import Lagtop
 from function_reference import cells_of
 
-from lagrange_cli.elliptic.arguments import ExactComplex, parse_arguments
+from lagrange_cli.elliptic.arguments import parse_arguments
 
 DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
 
@@ -112,26 +112,6 @@ def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
         mantissa, exponent = shown["nome_prime"].split("e")
         size = mpmath.mpf(mantissa) * mpmath.mpf(10) ** int(exponent)
         assert abs(size / mpmath.exp(-2 * K) - 1) < 1e-29
-
-
-READ = {
-    **{"0.3": "0.3", "i": "0 1", "-i": "0 -1", "-0.5+i": "-0.5 1", "1 - 2j": "1 -2", "2*I": "0 2"},
-    **{"-1e+3i": "0 -1000", "1e-3-2e-4i": "0.001 -0.0002"},
-    **{"K": "0 0 1", "+K/2": "0 0 1/2", " 2K ": "0 0 2", "-2.5*K": "0 0 -5/2"},
-    **{"3K/4": "0 0 3/4", "1e3K/7": "0 0 1000/7", "K/2+0.3i": "0 0.3 1/2", "iK/2": "0 0 0 1/2"},
-    **{
-        "iK'": "0 0 0 0 0 1",
-        "63.03K+0.64iK'": "0 0 63.03 0 0 0.64",
-        "K'-iK'/3+2": "2 0 0 0 1 -1/3",
-    },
-}
-
-
-@pytest.mark.parametrize("text", READ)
-def test_arguments_are_read(text: str) -> None:
-    arguments, parts = parse_arguments(text), map(Fraction, READ[text].split())
-    assert list(arguments.numbers(20)) == [ExactComplex(*parts)]
-    assert arguments.has_quarters is ("K" in text)
 
 
 def test_ranges_of_multiples() -> None:

@@ -65,24 +65,6 @@ def test_missing_numbers_are_nan_and_times_may_run_backwards(tmp_path: Path) -> 
     assert np.isnan(read(tmp_path / "a.json")["axis"]).sum(axis=1).tolist() == [0, 3, 3]
 
 
-@pytest.mark.parametrize(
-    ("header", "found"),
-    [
-        ("timestamp tx ty tz qx qy qz qw", {"quaternion": [7, 4, 5, 6], "position": [1, 2, 3]}),
-        ("t p q r w x y z", {"quaternion": [4, 5, 6, 7], "rates": [1, 2, 3]}),
-        ("time u0 u1 u2 u3 u4 u5 u6", {"quaternion": [4, 5, 6, 7]}),
-        ("t R11 R12 R13 R21 R22 R23 R31 R32 R33", {"matrix": [*range(1, 10)]}),
-        ("t qpos_0 qpos_1 qpos_2 qpos_3 qvel_0 qvel_1 qvel_2", {"quaternion": [1, 2, 3, 4]}),
-        ("t " + " ".join(f"qpos{i}" for i in range(7)), {"quaternion": [4, 5, 6, 7]}),
-        ("t roll pitch yaw", {"euler": [1, 2, 3]}),
-    ],
-)
-def test_names_of_columns(header: str, found: dict[str, list[int]]) -> None:
-    seen = quantities_in(header.split())
-    assert {key: list(seen[key].columns) for key in found} == found
-    assert "t" in seen
-
-
 def test_every_quantity_can_be_named_as_a_whole() -> None:
     for name, quantity in QUANTITIES.items():
         single = expanded([name])
