@@ -81,11 +81,10 @@ def _unless_lost(call: Callable[..., P], *arguments: Any) -> P:
         if not (is_lost or type(error).__module__.startswith("distributed")):
             raise
         time.sleep(_SIGNALS_TAKE)  # a signal to all processes is raised here, as the cause
-        if "connection" in str(error):
-            raise UnavailableError("the connection to the scheduler was lost") from None
-        raise UnavailableError(
-            f"a process that shared the work was lost (killed, or out of memory): {error}"
-        ) from None
+        why = "the connection to the scheduler was lost"
+        if isinstance(error, EOFError) or type(error).__name__ == "KilledWorker":
+            why = f"a process that shared the work was lost (killed, or out of memory): {error}"
+        raise UnavailableError(why) from None
 
 
 @contextmanager
