@@ -152,8 +152,18 @@ def jacobi_command(
         rows = legendre.amplitude_rows(phi, given, n, names, units=units, digits=digits)
         write_functions(rows, phi.real.count, out)
     elif u is not None:
-        asked = _families(functions, given)
-        v = _parameter(param, asked)
+        if "Z" in (functions or []):
+            wanted = "use zeta, whose column zeta01 is Jacobi's Z(u)"
+            raise LagtopError(f"--functions must not contain Z: {wanted}")
+        usual = ["sn", "cn", "dn"] if given.kind is Kind.COMPLEX else ["am"]
+        named = check_names("functions", functions or usual, FAMILIES)
+        if param is not None and not {"omega", "pi"} & {*named}:
+            raise LagtopError("--param needs --functions omega or pi")
+        if param is None and {"omega", "pi"} & {*named}:
+            wanted = "--param: 0.7, 0.7i or 0.2+0.7i"
+            raise LagtopError(f"the functions omega and pi need {wanted}")
+        v = param or ExactComplex(Fraction(0))
+        asked = tuple(name for name in FAMILIES if name in named)
         request = FunctionRequest(u, given, asked, v if digits else v.nearest(), units)
         write_functions(function_rows(request, digits), u.real.count, out)
     elif functions is not None:
@@ -162,27 +172,6 @@ def jacobi_command(
         keys = constant_keys("Moduli", legendre.CONSTANTS)
         record = legendre.constants_record(given, digits, n=n, units=units)
         out.document(record_document(record, lambda: keys))
-
-
-def _families(functions: list[str] | None, given: GivenModulus) -> tuple[str, ...]:
-    """Return the requested functions of u in the order of the table."""
-    if "Z" in (functions or []):
-        raise LagtopError(
-            "--functions must not contain Z: use zeta, whose column zeta01 is Jacobi's Z(u)"
-        )
-    default = ["sn", "cn", "dn"] if given.kind is Kind.COMPLEX else ["am"]
-    named = check_names("functions", functions or default, FAMILIES)
-    return tuple(name for name in FAMILIES if name in named)
-
-
-def _parameter(param: ExactComplex | None, families: tuple[str, ...]) -> ExactComplex:
-    """Return the value of --param, 0 if it is not needed."""
-    is_needed = not {"omega", "pi"}.isdisjoint(families)
-    if param is not None and not is_needed:
-        raise LagtopError("--param needs --functions omega or pi")
-    if param is None and is_needed:
-        raise LagtopError("the functions omega and pi need --param: 0.7, 0.7i or 0.2+0.7i")
-    return param or ExactComplex(Fraction(0))
 
 
 def _parse_distance(text: str) -> ExactComplex:

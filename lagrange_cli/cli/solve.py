@@ -78,7 +78,12 @@ def solve_command(
     motion = opt.motion_of(found, exact=digits is not None)
     if budget is not None:
         budget = key_of(budget, units)
-        uncertainty.write_budget(found, motion, budget, units, out)
+        from ..account.uncertain import budget as budget_of
+
+        report, is_fair = budget_of(found, motion, budget, units)
+        remedy = "use --samples 10000 in place of --budget"
+        uncertainty.warn_of_unfair([] if is_fair else [budget], remedy)
+        opt.write_report(out, lambda: report)
         return
     steps = _steps_of_section_8(motion, units) if derivation else {}
     names = [*steps] or get

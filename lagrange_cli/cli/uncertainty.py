@@ -6,14 +6,11 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from ..account.spread import ColumnSpread, Uncertainty
-from ..account.uncertain import NO_SPREAD, budget, spread_of, uncertain_record
+from ..account.uncertain import NO_SPREAD, spread_of, uncertain_record
 from ..errors import LagtopError
-from ..output.destination import Output
 from ..solver.solve import Motion
 from ..top.given import Given
-from ..top.units import Units
 from .app import complain
-from .shared import write_report
 
 _ROUNDING = 1e-13
 """Largest error of a number of a sweep over its size."""
@@ -101,10 +98,3 @@ def warn_if_unfair(stds: ColumnSpread | None) -> None:
     if stds and stds.unfair:
         since = f" from t = {min(stds.unfair.values(), key=abs):g}"
         warn_of_unfair(stds.unfair, "draw random tops in Python", since)
-
-
-def write_budget(found: Given, motion: Motion, key: str, units: Units, out: Output) -> None:
-    """Write the budget of a key.  Raises AbsentError."""
-    report, is_fair = budget(found, motion, key, units)
-    warn_of_unfair([] if is_fair else [key], "use --samples 10000 in place of --budget")
-    write_report(out, lambda: report)
