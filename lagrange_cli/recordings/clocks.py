@@ -9,6 +9,7 @@ from decimal import Decimal
 import numpy as np
 
 from ..arithmetic.types import Array
+from ..top.units import UNITS
 
 _HOURS = re.compile(r"(?:(\d{1,4}):)?(\d{1,2}):(\d\d(?:[.,]\d{1,18})?)", re.ASCII)
 _DATE = re.compile(
@@ -18,7 +19,8 @@ _DATE = re.compile(
 _1970 = datetime(1970, 1, 1, tzinfo=UTC)
 _2000, _2100 = 946_684_800, 4_102_444_800
 """Seconds from 1970 to the years between which a recording may have been made."""
-PER_SECOND = {"ms": 10**3, "us": 10**6, "ns": 10**9}
+_SINCE_1970 = ("ms", "us", "ns")
+"""The units in which clocks count the time since 1970."""
 
 
 def seconds_of(text: object) -> Decimal | None:
@@ -44,5 +46,6 @@ def seconds_of(text: object) -> Decimal | None:
 def unit_since_1970(t: Array) -> str:
     """Return the unit of whole numbers that count ms, us or ns since 1970, empty for others."""
     first, last = float(np.min(t)), float(np.max(t))
-    units = [x for x, n in PER_SECOND.items() if _2000 * n < first <= last < _2100 * n]
+    sizes = {x: float(UNITS[x].size) for x in _SINCE_1970}
+    units = [x for x, size in sizes.items() if _2000 < first * size <= last * size < _2100]
     return units[0] if units and (t == np.rint(t)).all() else ""

@@ -11,10 +11,11 @@ import numpy as np
 
 from ..errors import arg
 from ..names import ANGLES
+from ..top.units import unit_of_text
 from .options import OPTION_OF
 from .recording import Recording
 
-_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "minutes": 60.0, "s": 1.0, "0.1 ms": 1e-4}
+_UNITS = {x: float(unit_of_text(x).size) for x in ("ms", "us", "ns", "minutes", "s", "0.1 ms")}
 _FRAME_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 250, 480, 500, 960)
 _OTHER = {"wxyz": "xyzw", "xyzw": "wxyz", "body": "space", "space": "body"}
 _RATES, _ANGLES = {"rates", "angle_rates"}, {*ANGLES, "euler"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,8 @@ from ..errors import DataError, LagtopError, UnavailableError, arg
 from ..file_bytes import shown_path, utf8_path
 from ..files.tables import table_in
 from ..files.text_tables import EXPONENT
-from .clocks import PER_SECOND, seconds_of, unit_since_1970
+from ..top.units import UNITS
+from .clocks import seconds_of, unit_since_1970
 from .doubts import why_radians
 from .options import OPTION_OF, Reading
 from .quantities import (
@@ -214,7 +214,7 @@ class _File:
         t, found = self._column(), self.time
         unit = unit_since_1970(t)
         if unit and found.factor is None:
-            found = found._replace(factor=1 / Fraction(PER_SECOND[unit]), written=unit)
+            found = found._replace(factor=UNITS[unit].size, written=unit)
         elif unit != found.written:
             unit = ""
         begins = converted("t", found, t[:1], radians=True)
