@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Lagtop
 
 from lagrange_cli.errors import DataError
 from lagrange_cli.files import text_tables
@@ -102,11 +101,6 @@ def test_the_user_decides_about_commas(first: str, tmp_path: Path) -> None:
         assert reader(path, ",") == [1.234]
         with pytest.raises(DataError, match=r"got '1,234' \(use decimal=comma\)"):
             reader(path, ".")
-
-
-def test_a_comma_that_may_be_the_delimiter(lagtop: Lagtop) -> None:
-    words = ["table", "--times", "-", "--columns", "t", "--decimal", "comma"]
-    assert lagtop(*words, input="0,5\n1,0\n").stdout == "t\n0,5\n1,0\n"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-be", "gzip"])

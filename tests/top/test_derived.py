@@ -53,17 +53,6 @@ def test_the_rate_of_phi_gives_the_nearest_total_rate(unit: str) -> None:
     assert start == pytest.approx(starts[1]["phidot0"], rel=1e-15)
 
 
-def test_what_is_rational_is_exact() -> None:
-    assert Top(phidot0=-1, psidot0=2, theta0_deg=60).r0 == 0
-    assert solve(Top(phidot0=-1, psidot0=2, theta0_deg=60)).regime == "no spin"
-    thirds = Top(phidot0=Fraction(1, 3), psidot0=Fraction(1, 7), theta0_deg=120)
-    assert thirds.r0 == 11 / 42
-    assert solve(thirds).record(digits=20, keys=["r0"]) == {"r0": "0.26190476190476190476"}
-    assert Top(phidot0=0.1).r0 == 0.1
-    found = sweep(keys=["r0"], phidot0=[-1.0, 1.0], psidot0=2.0, theta0_deg=[60, 120])
-    assert found["r0"].tolist() == [0.0, 0.0]
-
-
 def test_options_take_the_place_of_the_other_in_a_scene(tmp_path: Path, lagtop: Lagtop) -> None:
     path = tmp_path / "scene.toml"
     path.write_text("m = 2\nA_cm = 3\nC = 1\ns = 4\ng = 9.81\nphidot0 = 5\n")

@@ -108,14 +108,6 @@ def test_units_are_named_in_tables_and_remarks(lagtop: Lagtop) -> None:
     assert "0.0156 time;" in lagtop("solve", "--r0", "900", "--get", "remark").stdout
 
 
-def test_r0_from_phidot0_with_units_is_rounded_once(lagtop: Lagtop) -> None:
-    """The sum phi' + psi' cos(theta0) = 16.4 pi rad/s, from exact numbers of turns."""
-    rates = ["--phidot0", "477 rpm", "--psidot0", "30 rpm", "--theta0", "60", "--get", "r0"]
-    assert lagtop("solve", *WORDS, *rates).stdout == "51.52211951887261\n"
-    body = [*WORDS[:2], "--A-cm", "5350g*cm^2", *WORDS[4:]]
-    assert lagtop("solve", *body, "--get", "A").stdout == "0.00085\n"
-
-
 def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
     path = tmp_path / "scene.toml"
     path.write_text("".join(f'{name} = "{text}"\n' for name, text in BODY.items()), "utf-8")
@@ -140,12 +132,6 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_rad", "--rad")
     assert rows.stdout.splitlines()[1] == "a,0.35,50.26548245743669,0.5,"
     assert "line 3: m must be a finite decimal number, got '5O'" in rows.stdout
-
-
-def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
-    ask = ["table", "--n", "2", "--columns", "t"]
-    assert lagtop(*ask, "--t-max", "2min").stdout == "t\n0.0\n120.0\n"
-    assert lagtop(*ask, *PAPER, "--t-max", "2").stdout == "t\n0.0\n2.0\n"
 
 
 def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, solved: Any) -> None:

@@ -31,10 +31,6 @@ from lagrange_cli.top.values import (
 )
 
 
-def test_a_span_goes_from_the_smaller_to_the_larger_end() -> None:
-    assert str(parse_number_or_span("log:1:2.5")) == "1 to 2.5"
-
-
 def test_numbers_of_other_libraries_are_values() -> None:
     assert value_of("m", 50) == Value(50)
     assert value_of("m", ufloat(50, 0.5)) == Value(50.0, "", Fraction(1, 2))
