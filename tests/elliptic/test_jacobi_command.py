@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from fractions import Fraction
 from typing import Any
 
@@ -78,26 +77,7 @@ def test_sizes_beyond_decimals_are_0_or_empty_cells(options: str, lagtop: Lagtop
     assert lagtop("jacobi", *options.split()).exit_code == 0
 
 
-def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
-    """am, sn, cn and dn are the default, and beside other functions only if they are named."""
-    plain = "u am_deg sn cn dn".split()
-    for families, names in (
-        ("", plain),
-        ("--functions am", plain),
-        ("--functions zeta", "u zeta01 zeta00 zeta11 zeta10".split()),
-        ("--functions am,pi --param 0.3", [*plain, "pi01", "pi00", "pi11"]),
-        ("--functions pi --param 2i", "u pi01_imag pi00_imag pi11_imag".split()),
-    ):
-        shown = cells(lagtop, f"--k 0.8 --u 0.1:1:3 {families}")
-        assert (list(shown), len(shown["u"])) == (names, 3)
-
-
-def test_the_constants_of_whole_moduli(lagtop: Lagtop) -> None:
-    one = json.loads(lagtop("jacobi", "--k", "1", "--format", "json").stdout)
-    assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
-    half = json.loads(lagtop("jacobi", "--k-prime", "0.5", "--format", "json").stdout)
-    assert list(half)[:4] == ["k", "k_prime", "modular_angle_deg", "nome"]
-    assert (half["modular_angle_deg"], half["k"]) == (60, math.sqrt(0.75))
+def test_the_constants_of_a_complex_modulus_have_parts(lagtop: Lagtop) -> None:
     assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
 
 
