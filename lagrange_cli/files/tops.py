@@ -121,7 +121,7 @@ class TopsFile(NamedTuple):
                 one_of_each(given)
                 inputs = overridden(shared, given)
             except LagtopError as error:
-                errors[i] = str(error)
+                errors[i] = str(error) if error.key else error.args[0]  # a heading is no option
             found.append(inputs)
             carried.append([values.get(name) for name in self.carried])
         names = {*shared, *(x for inputs in found for x in inputs)}
@@ -135,7 +135,7 @@ class TopsFile(NamedTuple):
         try:
             number = self.table.number(cell)
         except LagtopError as error:
-            raise LagtopError(f"{name} {error}") from None
+            raise LagtopError(f"{name} {error.marked}") from None
         return checked_double(name, number * self.units[name].number)
 
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import LagtopError, SomeFailedError
+from ..errors import LagtopError, Message, SomeFailedError, marked
 from ..files.tops import Product, TopsFile, read_tops
 from ..output.formats import format_of
 from ..solver.keys import shown_keys
@@ -83,9 +83,10 @@ class Sweep(NamedTuple):
         keys = [*self.keys, *(x.key for x in self.where)]
         columns, errors, not_bodies = records(given, keys, are_bodies=self.is_body)
         if given.lines is not None:
-            errors = {row: f"line {given.lines[row]}: {errors[row]}" for row in errors}
+            lines = {row: f"line {given.lines[row]}: " for row in errors}
+            errors = {row: Message(lines[row] + marked(errors[row])) for row in errors}
         if "error" in columns:
-            columns["error"][[*errors]] = [*errors.values()]
+            columns["error"][[*errors]] = [*map(str, errors.values())]
         first = errors[min(errors)] if errors else ""
         counts = len(errors), first, not_bodies * (not self.is_body)
         written, rows = list[Any](given.carried), given.size
@@ -189,5 +190,6 @@ def check(done: Sequence[Part], remedy: str = "") -> None:
     """Raise SomeFailedError if a top has an error; `remedy` ends the message."""
     if failed := [part for part in done if part.failed]:
         count, tops = sum(x.failed for x in failed), sum(x.size for x in done)
-        found = f"{count} of {tops} tops have an error; the first: {min(failed).first_error}"
+        first = marked(min(failed).first_error)
+        found = f"{count} of {tops} tops have an error; the first: {first}"
         raise SomeFailedError(f"{found}{remedy}")

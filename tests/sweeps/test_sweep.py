@@ -163,6 +163,11 @@ def test_sweeps_that_are_refused(options: str, code: int, message: str, lagtop: 
 
 def test_dicts(tmp_path: Path, lagtop: Lagtop) -> None:
     file = tmp_path / "tops.csv"
+    file.write_text('r0;m\n"1,5";3\n2.5;3\n')
+    mixed = lagtop("sweep", file, "--keys", "r0", "--A", "9", "--C", "9", "--s", "4", "--g", "9")
+    assert mixed.stderr.endswith(
+        "r0 must be a finite decimal number, got '2.5' (use --decimal point)\n"
+    )
     file.write_bytes(
         b"\xef\xbb\xbfname,r0,theta0_deg,T_nutation\r\n"
         b'"a, ""b""",50,30,9\r\n\r\n=x,5_0,30,9\r\nc,7\r\n'
