@@ -115,7 +115,7 @@ class Bounded:
     def __mul__(self, other: Operand) -> Bounded:
         x, y = self, _lifted(other)
         product = x.value * y.value
-        is_exact = isinstance(other, float) and math.frexp(other)[0] == 0.5
+        is_exact = isinstance(other, float | int) and math.frexp(other)[0] == 0.5
         unit, positive = unit_of(product) * (not is_exact), x is y or (x.positive and y.positive)
         if x.relative is None and y.relative is not None:
             x, y = y, x
@@ -220,24 +220,6 @@ def best(x: Bounded, other: Callable[[], Bounded]) -> Bounded:
         return x
     y = other()
     return choose(lost & ~(y.error >= x.error), y, x)
-
-
-def lifted(function: Callable[..., Array], *slopes: Callable[..., Any]) -> Callable[..., Bounded]:
-    """Return a function of doubles as one of bounded numbers, from the sizes of its derivatives.
-
-    The function itself is in error by at most 16 roundings.
-    """
-
-    def of_bounded(*arguments: Bounded) -> Bounded:
-        near = [x.rounded() for x in arguments]
-        values = [x.value for x in near]
-        result = function(*values)
-        error = 16 * EPS * abs(result)
-        for x, slope in zip(near, slopes, strict=True):
-            error = error + abs(slope(*values)) * x.error
-        return Bounded(result, error)
-
-    return of_bounded
 
 
 def atan2(y: Bounded, x: Bounded) -> Bounded:

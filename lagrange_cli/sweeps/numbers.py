@@ -23,7 +23,6 @@ from ..arithmetic.bounded import (
     best,
     choose,
     known,
-    lifted,
     relative_errors,
     root_of,
     size_of,
@@ -66,6 +65,15 @@ def complete_E(k_prime: Bounded) -> Bounded:
     return _by_relative_errors(ellipe(1 - k_prime.value * k_prime.value), k_prime)
 
 
+def ellint_E(phi: Bounded, k: Bounded) -> Bounded:
+    """Return E(phi, k); its derivatives are at most 1 and k F(phi, k)."""
+    phi, k = phi.rounded(), k.rounded()
+    m = k.value * k.value
+    found = ellipeinc(phi.value, m)
+    of_k = k.value * ellipkinc(phi.value, m)
+    return Bounded(found, 16 * EPS * found + phi.error + of_k * k.error)
+
+
 def nome_of(k: Bounded, k_prime: Bounded) -> Bounded:
     """Return the nome exp(-pi K'/K); its derivatives by log k and log k' are at most 2.
 
@@ -96,11 +104,7 @@ FUNCTIONS: dict[str, Any] = {
     "atan2": atan2,
     "complete_E": complete_E,
     "cos": itemgetter(1),  # of theta0
-    "ellint_E": lifted(
-        lambda phi, k: ellipeinc(phi, k * k),
-        lambda phi, k: 1.0,
-        lambda phi, k: k * ellipkinc(phi, k * k),
-    ),
+    "ellint_E": ellint_E,
     "integral_F": integral_F,
     "max": lambda x, y: choose(x.doubles >= y, x, Bounded(x.value * 0.0 + y)),
     "nome_of": nome_of,
@@ -114,6 +118,20 @@ _START = frozenset(
     "beta_minus_b beta_plus_b".split()
 )
 """The numbers of any start that are rounded from pairs of doubles, beside the gaps."""
+
+
+_FORMULAS = {
+    "u0": "cos(theta0)",
+    "momentum": "psidot0*sin(theta0)**2",  # beta - b u0 (4,5)
+    "beta_minus_b": "momentum - b*above_u0",
+    "beta_plus_b": "momentum + b*below_u0",
+    "over_fast": f"b**2 - {FAST}*a",  # not negative in a pseudo-regular precession
+    "square_of_steady": "b**2 - 2*a*u0",  # negative if there is no steady precession
+    "height": "rise + fall",
+    "wide": "far + a*fall",
+    "m_k": "a*height/wide",
+}
+"""Numbers that formulas of `keys` use."""
 
 
 class Gaps(NamedTuple):
@@ -171,8 +189,9 @@ class ArrayNumbers(dict[str, Any]):
         if self.finer and name in _START:
             found = self.finer[name]
             value = tuple(x.rounded() for x in found) if type(found) is tuple else found.rounded()
-        elif name in LINES:
-            value = evaluated(LINES[name].evaluated, self)
+        elif name in LINES or name in _FORMULAS:
+            formula = LINES[name].evaluated if name in LINES else _FORMULAS[name]
+            value = evaluated(formula, self)
         else:
             value = getattr(self["gaps"], name) if name in Gaps._fields else getattr(self, name)
         self[name] = value
@@ -222,36 +241,6 @@ class ArrayNumbers(dict[str, Any]):
         return found
 
     # the start
-
-    @property
-    def u0(self) -> Any:
-        """The cosine of the tilt at the start."""
-        return self["theta0"][1]
-
-    @property
-    def momentum(self) -> Any:
-        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
-        return self["psidot0"] * (self["theta0"][0] * self["theta0"][0])
-
-    @property
-    def beta_minus_b(self) -> Any:
-        """beta - b."""
-        return self["momentum"] - self["b"] * self["above_u0"]
-
-    @property
-    def beta_plus_b(self) -> Any:
-        """beta + b."""
-        return self["momentum"] + self["b"] * self["below_u0"]
-
-    @property
-    def over_fast(self) -> Any:
-        """b^2 less its least value in a pseudo-regular precession."""
-        return self["b"] * self["b"] - float(FAST) * self["a"]
-
-    @property
-    def square_of_steady(self) -> Any:
-        """b^2 - 2 a cos(theta0), negative if there is no steady precession."""
-        return self["b"] * self["b"] - 2.0 * self["a"] * self["u0"]
 
     @property
     def steady_rates(self) -> tuple[Bounded, Bounded]:
@@ -325,26 +314,11 @@ class ArrayNumbers(dict[str, Any]):
         return (u1, u1) if self.steady else (u2, u1)
 
     @property
-    def height(self) -> Any:
-        """u1 - u2."""
-        return self["rise"] + self["fall"]
-
-    @property
-    def wide(self) -> Any:
-        """a (u3 - u2)."""
-        return self["far"] if self.steady else self["far"] + self["a"] * self["fall"]
-
-    @property
     def narrow(self) -> Any:
         """a (u3 - u1)."""
         if self.regime is not None:
             return self["far"]
         return self["a_above_u3"] + self["a"] * self["above_u1"]
-
-    @property
-    def m_k(self) -> Bounded:
-        """k^2 (4,19)."""
-        return Bounded(0.0) if self.steady else self["a"] * self["height"] / self["wide"]
 
     @property
     def m_k_prime(self) -> Bounded:
