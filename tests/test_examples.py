@@ -25,6 +25,7 @@ from lagtop import LagtopError, Top, solve
 from scenes import UNIT
 from uncertainties import ufloat
 
+from lagrange_cli.account.explanation import explanations
 from lagrange_cli.arithmetic.enclosures import text_of
 from lagrange_cli.cli.app import main
 from lagrange_cli.elliptic.arguments import parse_arguments
@@ -33,7 +34,7 @@ from lagrange_cli.names import check_names
 from lagrange_cli.recordings.quantities import quantities_in
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top import values
-from lagrange_cli.top.units import Units
+from lagrange_cli.top.units import Units, conversion
 
 PAGES = Path(__file__).parent / "examples"
 WORDING, KNOWN = (
@@ -92,6 +93,11 @@ def uncertain(text: str) -> str:
     return f"{value.number} +/- {value.std}"
 
 
+def size_of(key: str, unit: str) -> Fraction:
+    """Return the size of a unit in SI, without the power of pi."""
+    return conversion(key, unit)[0]
+
+
 def argument(text: str) -> str:
     """Return the real and imaginary part of an argument, and its multiples of K, iK, K', iK'."""
     arguments = parse_arguments(text)
@@ -109,7 +115,7 @@ def columns_known(header: str) -> str:
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
 NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
 NAMES |= {x.__name__: x for x in (sentence, unit, numbers, digits, row, uncertain)}
-NAMES |= {x.__name__: x for x in (argument, columns_known)}
+NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 
 

@@ -143,15 +143,6 @@ def test_the_formula_with_numbers_gives_the_number(name: str) -> None:
     assert checked >= 40
 
 
-def test_a_missing_number_has_a_reason() -> None:
-    (period,) = explanations(solve(Top(theta0_deg=0)), ["T_nutation"])
-    assert (period.value, period.numbers) == (None, "")
-    assert period.missing == "T_nutation, K, u3: undefined in the regime 'sleeping'"
-    (period,) = explanations(solve(Top(g=0.0, psidot0=3.0)), ["T_nutation"])
-    assert period.value == solve(Top(g=0.0, psidot0=3.0)).T_nutation
-    assert period.missing == "u3: defined only if there is a torque"
-
-
 def test_numbers_differ_in_as_many_digits_as_that_takes() -> None:
     for r0 in (1e3, 1e5, 1e7):
         motion = solve(Top(r0=r0))

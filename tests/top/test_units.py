@@ -28,22 +28,6 @@ def read(inputs: dict[str, str]) -> dict[str, Value]:
 
 
 @pytest.mark.parametrize(
-    ("key", "unit", "size"),
-    [
-        ("m", "slug", Fraction(45359237, 10**8) * Fraction(980665, 10**5) / Fraction("0.3048")),
-        ("A", "lb*in^2", Fraction(45359237, 10**8) * Fraction(254, 10**4) ** 2),
-        ("A", "N·m·s²", Fraction(1)),
-        ("A_cm", "kg m2", Fraction(1)),
-        ("g", "g_0", Fraction(980665, 10**5)),
-        ("g", "ft s⁻²", Fraction(3048, 10**4)),
-        ("r0", "/s", Fraction(1)),
-    ],
-)
-def test_definitions_are_exact(key: str, unit: str, size: Fraction) -> None:
-    assert conversion(key, unit)[0] == size
-
-
-@pytest.mark.parametrize(
     ("unit", "turns"),
     [("rpm", "1/60"), ("turn/s", "1"), ("rev/min", "1/60"), ("deg/s", "1/360"), ("°/s", "1/360")],
 )
