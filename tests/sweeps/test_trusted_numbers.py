@@ -238,5 +238,5 @@ def test_a_line_is_all_that_a_key_needs(monkeypatch: pytest.MonkeyPatch, lagtop:
     ratio = solve(Top()).record(keys=[name])[name]
     assert "a new number" in lagtop("explain", name).stdout
     assert json.loads(lagtop("solve", "--get", name, "--format", "json").stdout) == {name: ratio}
-    (top,) = dicts(lagtop("find", "--r0", "40:60", f"ratio={ratio}", "--keys", "r0").stdout)
+    top, *_ = dicts(lagtop("find", "--r0", "40:60", f"ratio={ratio}", "--keys", "r0").stdout)
     assert float(top["r0"]) == pytest.approx(50, rel=1e-12)
