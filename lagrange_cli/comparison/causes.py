@@ -83,8 +83,11 @@ class _Search:
         return float(self.errors(cause, most).max())
 
     def agrees(self, cause: Cause) -> bool:
-        """Return whether the axis of a cause's top moves like the one that is seen."""
-        if not self.seen:
+        """Return whether the axis of a cause's top moves like the one that is seen.
+
+        It is another axis that is seen if the attitude was misread.
+        """
+        if not self.seen or "attitude" in cause.kinds:
             return True
         clock = float(np.ptp(self.few(cause, _SOME).t) / (np.ptp(self.run.t) or 1.0))
         return self.seen.is_near((cause.exact or self.given).motion.top, clock)
@@ -127,29 +130,32 @@ class _Search:
         units = [x for x in self.written if x.kinds & {"clock", "rates"}] + steps()
         others = [x for x in self.written if x not in units]
         early = [*self.placed(none), *units, *sign, *self.placed(sign)]
-        yield [*early, *self.placed(none, in_other=True), *self.tops, *others], self.limit
+        near = [*filter(self.agrees, self.tops)]
+        yield [*early, *self.placed(none, in_other=True), *near, *others], self.limit
         inputs = estimated(self.top, self.seen) if self.seen else []
-        singles = [*units, *self.tops, *others]
+        singles = [*units, *near, *others]
         if self.before[0] > self.limit:  # not only the rates are wrong
             yield [*self.rates_of_clock(), *inputs], self.limit
             yield from self.shifts()
             two = min(_EXPLAINS**2 * self.before.max(), self.limit)
             yield self.turned(), two
             reverse = other_tops(Top(**self.top.inputs() | {"r0": -self.top.r0}))
-            both = [y._replace(name=f"{y.name}; {x.name}") for x in sign for y in reverse]
+            both = [
+                y._replace(name=f"{y.name}; {x.name}")
+                for x in sign
+                for y in filter(self.agrees, reverse)
+            ]
             yield [*both, *self.placed(singles), *self.placed(singles, in_other=True)], two
-            yield self.pairs(singles), two
+            yield self.pairs([*units, *others]), two
             yield self.engines()
         rows = [x for x in [*self.placed(none), *singles] if x.name != BACKWARDS]
-        yield [x for x in rows if self.agrees(x)], _MOST
-        yield [x for x in inputs if self.agrees(x)], _MOST
+        yield [*filter(self.agrees, rows)], _MOST
+        yield [*filter(self.agrees, inputs)], _MOST
 
     def pairs(self, causes: Sequence[Cause]) -> list[Cause]:
-        """Return two causes of different kinds at once."""
-        first = [x for x in causes if not x.exact]
-        both = [(x, y) for i, x in enumerate(first) for y in [*first[i + 1 :], *self.tops]]
-        pairs = [x.with_other(y) for x, y in both if not x.kinds & y.kinds]
-        return [x for x in pairs if self.agrees(x)]
+        """Return two causes of different kinds at once: a misreading, and another one or a top."""
+        both = [(x, y) for i, x in enumerate(causes) for y in [*causes[i + 1 :], *self.tops]]
+        return [*filter(self.agrees, (x.with_other(y) for x, y in both if not x.kinds & y.kinds))]
 
     def engines(self) -> tuple[list[Cause], float]:
         """Return engines that move no top, compared with the first rows, and their greatest error.

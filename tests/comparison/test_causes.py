@@ -278,6 +278,14 @@ def test_two_causes_of_one_input_each_combine() -> None:
     assert found.cause == "gravity acts twice; r0 has the wrong sign"
 
 
+@pytest.mark.parametrize("reading", ["the quaternion is xyzw and was read", "conjugate"])
+def test_a_misread_attitude_hides_no_wrong_input(reading: str) -> None:
+    """The axis that is seen moves like that of a third top."""
+    found = compare(TOP, T, **READINGS[reading](*run("general", "r0 rpm")))
+    assert reading in (found.cause or "")
+    assert "r0 in radians was taken as rpm" in (found.cause or "")
+
+
 def test_numbers_of_what_is_in_no_row() -> None:
     """Damping, two wrong inputs, another start; times may decrease."""
     engine: Any = mistakes_of(SCENES["general"])["damping .05"][1]
