@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import chain
 from typing import Any, NamedTuple
 
 from ..file_bytes import utf8_path
@@ -64,13 +63,8 @@ class Report(NamedTuple):
         shown = [field for field in self.fields if field.heading]
         cells = [[field.cell(row) for field in shown] for row in self.rows]
         numbers = [i for i, field in enumerate(shown) if not field.is_text]
-        page: list[str | Grid | Lines] = []
-        if conditions:
-            named = [[name, *[""] * (len(x) - 1)] for name, x in lines.items()]
-            texts = [
-                f"{x:11}{y}" for x, y in zip(chain(*named), chain(*lines.values()), strict=True)
-            ]
-            page.append(Lines(texts, hanging=11))
+        texts = [f"{'' if i else name:11}{x}" for name, y in lines.items() for i, x in enumerate(y)]
+        page: list[str | Grid | Lines] = [Lines(texts, hanging=11)] if texts else []
         if cells:
             page.append(Grid([field.heading for field in shown], cells, numbers))
         page += conclusions
