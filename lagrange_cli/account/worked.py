@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..arithmetic.enclosures import settled
+from flint import acb, arb
+
+from ..arithmetic.enclosures import at_precision, settled
 from ..arithmetic.formulas import evaluated
 from ..arithmetic.text import value_text
+from ..solver.numbers import FUNCTIONS, square
 from ..solver.solve import Motion
 from ..top.units import bare_name
 
 _DIGITS = (None, 20, 25, 30, 40, 60, 100, 200, 400)
 """Digits of the numbers that are tried, doubles first."""
+_MORE = 700
+"""Digits of the arithmetic beyond those of the numbers: the formula may cancel."""
 _SMALL = 0.01
 """A difference is small if it is smaller than this part of its first term."""
 
@@ -61,40 +66,52 @@ def _gives(
     formula: str, key: str, value: float, names: Mapping[str, str], texts: Mapping[str, str]
 ) -> bool:
     """Return whether texts in place of names give a value; for an equation, by Newton's step."""
-    import mpmath  # start-up
 
-    with mpmath.workdps(max(map(len, texts.values())) + 40):
-        degree, own = mpmath.pi / 180, bare_name(key)
-        known = {name: getattr(mpmath, name) for name in "acos asin cos exp pi sin sqrt".split()}
-        known |= {"abs": abs, "max": max, "ellint_F": lambda phi, k: mpmath.ellipf(phi, k * k)}
-        known |= {"ellint_E": lambda phi, k: mpmath.ellipe(phi, k * k)}
-        known |= {"ellint_Pi": lambda n, k: mpmath.ellippi(n, k * k)}
+    def off() -> arb:
+        degree, own = arb.pi() / 180, bare_name(key)
+        known = _FUNCTIONS | {"pi": arb.pi()}
         for name, text in texts.items():
             is_in_degrees = names.get(name, "").endswith("_deg")
-            known[name] = mpmath.mpf(text) * (degree if is_in_degrees else 1)
+            known[name] = arb(text) * (degree if is_in_degrees else 1)
+        found = _value(formula, known)
+        if " = " in formula.partition(" where ")[0]:
+            step = known[own].mid() * arb(10) ** -12
+            above, below = (_value(formula, known | {own: known[own] + x}) for x in (step, -step))
+            found *= 2 * step / (above - below)
+        else:
+            found = found / (degree if key.endswith("_deg") else 1) - value
+        return found
 
-        def result(**changed: Any) -> Any:
-            return _evaluated(formula, known | changed)
-
-        try:
-            if " = " in formula.partition(" where ")[0]:
-                step = known[own] * mpmath.mpf(10) ** -12
-                above, below = (result(**{own: known[own] + x}) for x in (step, -step))
-                off = result() * 2 * step / (above - below)
-            else:
-                off = result() / (degree if key.endswith("_deg") else 1) - value
-        except ZeroDivisionError:
-            return False
-        last_but_one = 10.0 ** (math.floor(math.log10(abs(value))) - 14) if value else 1e-15
-        return bool(abs(off) < last_but_one)
+    last_but_one = 10.0 ** (math.floor(math.log10(abs(value))) - 14) if value else 1e-15
+    digits = max(map(len, texts.values())) + _MORE
+    return at_precision(digits, lambda: bool(abs(off()) < last_but_one))
 
 
-def _evaluated(formula: str, known: Mapping[str, Any]) -> Any:
+def _value(formula: str, known: Mapping[str, Any]) -> arb:
     """Return the value of a formula as declared, or the difference of both sides."""
     plain, _, where = re.sub(r" \(limit.*?pole\)", "", formula).partition(" where ")
     names = dict(known)
     for part in filter(None, re.split(r", (?=[A-Z] = )", where)):
         name, _, meaning = part.partition(" = ")
-        names[name] = eval(meaning, {}, names)
+        names[name] = evaluated(meaning, names)
     left, _, right = plain.rpartition(" = ")
-    return eval(right, {}, names) - (eval(left, {}, names) if left else 0)
+    found: arb = evaluated(right, names) - (evaluated(left, names) if left else 0)
+    return found
+
+
+def _legendre(complete: Callable[[Any], acb], any_phi: Callable[..., acb]) -> Callable[..., arb]:
+    """Return an integral of phi and k; a ball of phi around pi/2 has branches on both sides."""
+
+    def integral(phi: arb, k: arb) -> arb:
+        m = acb(square(k))
+        return (complete(m) if phi.overlaps(arb.pi() / 2) else any_phi(acb(phi), m)).real
+
+    return integral
+
+
+_FUNCTIONS: dict[str, Any] = FUNCTIONS | {
+    **{"asin": arb.asin, "cos": arb.cos, "exp": arb.exp, "sin": arb.sin},
+    "ellint_F": _legendre(acb.elliptic_k, acb.elliptic_f),
+    "ellint_E": _legendre(acb.elliptic_e, acb.elliptic_e_inc),
+    "ellint_Pi": lambda n, k: acb.elliptic_pi(acb(n), acb(square(k))).real,
+}

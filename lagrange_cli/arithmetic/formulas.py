@@ -8,7 +8,8 @@ from functools import cache
 from types import CodeType
 from typing import Any
 
-_SQUARED = re.compile(r"(\w+(?:\([^()]*\))?|\([^()]*\))\*\*2")
+_BRACKETS = r"\((?:[^()]|\([^()]*\))*\)"
+_SQUARED = re.compile(rf"(\w+(?:{_BRACKETS})?|{_BRACKETS})\*\*2")
 """A square of a name, a function or a sum: Arb has no power of a ball that contains 0."""
 
 
