@@ -1,11 +1,10 @@
-"""Advice after a failed fit: only remedies that another fit confirms, while there is time."""
+"""Advice after a failed fit: only remedies that another fit confirms, within a budget."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from time import process_time
 from typing import Any
 
 import numpy as np
@@ -26,12 +25,14 @@ from .reasons import NEEDS_ADVICE, Kind, Reason
 from .rows import calmness, evenly_timed, likely_gap, release, with_gap
 from .search import best_fit
 
-_BUDGET = 5.0
-"""Seconds of the processor for a fit and its advice."""
-_LEAST = 2.0
-"""The same for the advice at least."""
-_LEAST_COST = 0.1
-"""Least time for a fit of some rows, over that for a fit of all."""
+_BUDGET = 8.0
+"""Cost of the fits that are tried; that of a short recording with a tilt is 1, and takes 0.5 s."""
+_LONG = 1500
+"""Rows that cost as much again."""
+_WITHOUT_TILT = 5.0
+"""Cost of a fit that has to find the tilt."""
+_LEAST_COST = 0.15
+"""Cost of a window over that of the whole, at least."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
 _AS_CALM = 0.01
@@ -67,46 +68,40 @@ _CLOSER = 0.3
 
 
 class Advice:
-    """The search for what makes a failed fit good, the likeliest mistakes first.
+    """The search for what makes a failed fit good, the likeliest mistakes first."""
 
-    The fit took some `seconds`.
-    """
-
-    def __init__(self, recording: Measured, known: Known, outcome: Outcome, seconds: float) -> None:
+    def __init__(self, recording: Measured, known: Known, outcome: Outcome) -> None:
         self.recording, self.known, self.outcome = recording, known, outcome
         self.kinds = {x.kind for x in outcome.failed}
         self.body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
         if len(recording.angles) == 1:  # of which a known start is a part
             self.body = dict(known)
-        self.cost, self.is_early = seconds, True
-        self.until = process_time() + max(_BUDGET - seconds, _LEAST)
+        self.left, self.is_early = _BUDGET, True
+        self.cost = 1 + recording.t.size / _LONG
+        self.cost *= 1.0 if "theta" in recording.angles else _WITHOUT_TILT
 
     def reasons(self) -> Iterator[Reason]:
         """Yield advice, the best first."""
         if self.kinds & {Kind.PIVOT, Kind.ROWS} or not self.kinds & NEEDS_ADVICE:
             return  # they say what to do
-        if DECAY in self.outcome.shown:
+        if DECAY in self.outcome.shown or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         for texts in (self._times, self._meanings, self._frames, self._aliased, self._parts):
             yield from (Reason(Kind.READING, x) for x in texts())
-        if Kind.MACHINE not in self.kinds:
-            yield from self._windows()
         yield from (Reason(Kind.READING, x) for x in self.gap())
         if Kind.MACHINE not in self.kinds:
             yield from self._last()
 
     def _fit(self, recording: Measured, known: Known | None = None, **how: Any) -> Outcome | None:
-        """Return a fit, None if there is no time, or if it needs other inputs."""
-        begun, size = process_time(), max(recording.t.size / self.recording.t.size, _LEAST_COST)
-        if begun + self.cost * size > self.until:
-            self.is_early = False
+        """Return a fit, None if it costs too much, or if it needs other inputs."""
+        cost = self.cost * max(recording.t.size / self.recording.t.size, _LEAST_COST)
+        self.is_early &= cost <= self.left
+        if cost > self.left:
             return None
-        try:
+        self.left -= cost
+        with suppress(DataError):
             return best_fit(recording, self.body if known is None else known, **how)
-        except DataError:
-            return None
-        finally:
-            self.cost = (self.cost + (process_time() - begun) / size) / 2
+        return None
 
     def _is_good(self, recording: Measured, known: Known | None = None, also: str = GOOD) -> bool:
         """Return whether a fit is good, and needs no faster spin or reversed angle.

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import islice
-from time import process_time
 from types import NoneType
 from typing import Any, Unpack
 
@@ -34,7 +33,6 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
 
     Raises DataError for a recording that cannot be fitted.
     """
-    begun = process_time()
     outcome = best_fit(recording, known, units=units)
     if {Kind.OPEN, Kind.MOTION} & {x.kind for x in outcome.failed}:
         frequency = frequency_of_parts(recording)
@@ -42,7 +40,7 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
             other = best_fit(recording, known, units=units, frequency=frequency)
             if not other.is_open:
                 outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
-    advice = Advice(recording, known, outcome, process_time() - begun)
+    advice = Advice(recording, known, outcome)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
         is_late = outcome.neighbours is not None and outcome.neighbours.late is not None

@@ -21,14 +21,15 @@ from scipy.special import fdtrc, ndtri
 
 from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array
-from .checks import ROUNDING, Residuals
+from .checks import CHANCE, ROUNDING, Residuals
 from .measured import Measured
 from .variations import Variations
 
 SMALL = 0.01
 """Size of a neighbour that counts in the model error if the recording does not show it."""
 _SURE = 4.0
-"""Standard deviations of a neighbour that is shown; more if it is searched at many places."""
+"""Standard deviations of a neighbour that is shown; more if it is searched at many places, or in
+windows."""
 _MOVED = 1.0
 """Standard deviations by which a neighbour that is shown moves a number of the fit at least."""
 _ALIKE = 6.0
@@ -189,6 +190,8 @@ class Finding(NamedTuple):
     """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
     sigmas: float
     """The size in standard deviations, or the same probability in several directions."""
+    least: float
+    """The least of them if it is shown."""
     gain: float
     """The fall of chi^2."""
     chi2: float
@@ -207,8 +210,7 @@ class Finding(NamedTuple):
     @property
     def is_shown(self) -> bool:
         """Whether it is there and matters."""
-        least = math.sqrt(_SURE**2 + 2 * math.log(self.one.tried))
-        return self.is_possible and self.sigmas >= least and self.effect >= _MOVED
+        return self.is_possible and self.sigmas >= self.least and self.effect >= _MOVED
 
     @property
     def directions(self) -> int:
@@ -235,7 +237,8 @@ class Neighbours:
 
     `rest` are the residuals in radians, shape (channels, times).  The fit `is_failing` if they are
     not those of a top.  `smoothing` is the square of the
-    width of a filter, over the period, if one made the noise smooth.
+    width of a filter, over the period, if one made the noise smooth.  `chance` is the probability
+    that noise fails a test.
     """
 
     def __init__(
@@ -248,9 +251,11 @@ class Neighbours:
         *,
         smoothing: float = 0.0,
         is_failing: bool = False,
+        chance: float = CHANCE,
     ) -> None:
         self.recording, self.residuals, self.motion = recording, residuals, motion
         self.period, self.smoothing, self.is_failing = period, smoothing, is_failing
+        self.chance = chance
         self.rows, one = recording.t / period, recording
         noise = [
             one.sigma.get(x)
@@ -408,6 +413,7 @@ class Neighbours:
             std,
             bool(is_possible),
             -float(ndtri(chance / 2)),
+            math.sqrt(_SURE**2 + 2 * math.log(one.tried * CHANCE / self.chance)),
             gain,
             chi2,
             noise,

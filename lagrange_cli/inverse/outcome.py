@@ -22,7 +22,7 @@ from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
-from .neighbours import LOST, Finding, Neighbours, neighbours_of
+from .neighbours import DECAY, LOST, Finding, Neighbours, neighbours_of
 from .reasons import ADVICE, MISFITS, Kind, Reason
 from .rows import repeated
 
@@ -177,9 +177,12 @@ class Outcome(HasRecord):
         return kept or self.failed
 
     def _of_neighbours(self) -> Iterator[Reason]:
-        """Yield what else than a Lagrange top the recording shows."""
-        if self.neighbour:
-            first = next(iter(self.shown))
+        """Yield what else than a Lagrange top the recording shows.
+
+        Windows show a decay by their means.
+        """
+        first = next(iter(self.shown), None)
+        if first and not (self.recording.name and first == DECAY):
             if first == LOST:
                 yield Reason(Kind.ROWS, f"{self.neighbour}: write the times of the frames")
             else:
@@ -229,6 +232,7 @@ class Outcome(HasRecord):
         others: Any = {
             "smoothing": self.lost / (2 * math.pi**2),
             "is_failing": any(self._misfits()),
+            "chance": self.chance,
         }
         has = self.motion(self.recording.t), self.inputs, 1 / self.frequency
         return neighbours_of(self.recording, self.residuals, *has, **others)
