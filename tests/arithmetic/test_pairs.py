@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from lagrange_cli.arithmetic.bounded import Bounded
 from lagrange_cli.arithmetic.pairs import DoubleDouble
 
 
@@ -29,3 +30,10 @@ def test_pairs_of_doubles_compute_in_30_digits() -> None:
             assert all(abs(compute(a, b) - found) < Fraction(1, 2**100) for a, b, found in pairs)
     roots = zip(exact(abs(x)), exact(abs(x).sqrt()), strict=True)
     assert all(abs(a - root * root) < Fraction(1, 2**100) for a, root in roots)
+
+
+def test_a_quotient_by_zero_is_no_number() -> None:
+    """Its reciprocal would be exactly 0."""
+    twice = 1.0 / (1.0 / Bounded(np.array([0.0, 2.0])))
+    assert np.isnan(twice.value).tolist() == [True, False]
+    assert (twice.relative or 0) < 1e-15

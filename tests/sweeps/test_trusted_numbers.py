@@ -82,6 +82,12 @@ CANCELLING: dict[str, list[Scene]] = {
     "mean rates": [
         UNIT | {"r0": 1, "theta0_deg": 60, "thetadot0": rate} for rate in (1e3, 1e4, 1e5, 1e8, 1e20)
     ],
+    # released next to the upper pole, b^2/2 is nearly a u0
+    "the largest root": [
+        EXAMPLE | {"theta0_deg": tilt, "r0": 2 * math.sqrt(39032 * 1587 * 4 * 981) / 17458 * more}
+        for tilt in (0.3, 1e-3, 1e-6)
+        for more in (1 + 1e-4, 1 + 1e-8, 1 - 1e-8)
+    ],
     # parts that cancel are computed in pairs of doubles; the worst error seen is 0.5 eps
     "mean rates in pairs of doubles": [
         EXAMPLE
