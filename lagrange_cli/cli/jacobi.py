@@ -160,7 +160,7 @@ def jacobi_command(
         if param is not None and not {"omega", "pi"} & {*named}:
             raise LagtopError("--param needs --functions omega or pi")
         if param is None and {"omega", "pi"} & {*named}:
-            wanted = "--param: 0.7, 0.7i or 0.2+0.7i"
+            wanted = "--param, such as 0.7, 0.7i or 0.2+0.7i"
             raise LagtopError(f"the functions omega and pi need {wanted}")
         v = param or ExactComplex(Fraction(0))
         asked = tuple(name for name in FAMILIES if name in named)

@@ -148,8 +148,8 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     axis, turns = found.axis, abs(float(top.r0)) * found.step
     if not found.is_trusted:
         smaller = f"use smaller steps (r0 dt is {turns:.2g} rad), or " * (turns > _FINE / 2)
-        said = f"the axis moves like that of no top (residual {axis.residual:.1%})"
-        yield f"{said}: {smaller}check the equations"
+        said = f"the axis does not move like that of a top (residual {axis.residual:.1%})"
+        yield f"{said}: {smaller}check the equations; for measured data, use fit"
         return
     same = max(_SAME, 3 * axis.residual)
     ratios = {x: getattr(found, x) for x in ("a", "b", "r0")}
@@ -160,7 +160,7 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     moved = [*_other_start(top, found, same)] if is_upright else []
     if known and (off or found.decay or moved or not is_upright):
         parts = [f"{x} = {y:.4g} {x}_0" if x in off else f"{x} = {x}_0" for x, y in known.items()]
-        yield f"the motion is that of {', '.join(parts)}"
+        yield f"the motion is that of a top with {', '.join(parts)}"
     elif known:
         most = max(axis.residual, *(abs(y - 1) for y in known.values()))
         yield f"the motion is that of the given top, to {most:.2%}: use smaller steps"
@@ -174,7 +174,7 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"the rates across the axis decay by {axis.damping:.1%} per unit of time"
     if not is_upright:
         x, y, z = axis.up
-        yield f"up is ({x:.4f}, {y:.4f}, {z:.4f}) in the frame of space"
+        yield f"up is ({x:.4f}, {y:.4f}, {z:.4f}) in the space frame"
     if turns > _COARSE:
         yield f"if each row is a step (r0 dt is {turns:.2g} rad), use smaller steps"
 

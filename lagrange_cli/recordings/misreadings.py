@@ -62,7 +62,7 @@ def _of_conventions(recording: Recording) -> Iterator[Misreading]:
     """Yield other values of the options."""
     for key, name in (
         ("quaternion", "the quaternion is {} and was read as {}"),
-        ("rates", "the rates are in the frame of {}"),
+        ("rates", "the rates are in the {} frame"),
         ("euler", "the Euler angles are in the sequence {}"),
     ):
         option = OPTION_OF[key]

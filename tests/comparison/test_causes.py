@@ -78,7 +78,7 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
     "the Euler angles are in the sequence XYZ": lambda turn, _: {"euler": turn.as_euler("XYZ")},
     "phi is counted backwards": lambda turn, _: angles(turn, phi=-1),
     "psi is counted backwards": lambda turn, _: angles(turn, psi=-1),
-    "rates are in the frame of space": lambda turn, x: attitude(turn, rates=turn.apply(x)),
+    "rates are in the space frame": lambda turn, x: attitude(turn, rates=turn.apply(x)),
     "the rates are in degrees": lambda turn, rates: attitude(turn, rates=np.degrees(rates)),
     "degrees per unit of time": lambda _, rates: {"rates": np.degrees(rates)},
     "y is up and the figure axis is the body's y axis": lambda turn, _: framed(turn, _Y_UP),
@@ -299,7 +299,7 @@ def test_numbers_of_what_is_in_no_row() -> None:
         found = compare(TOP, T[rows], quaternion=seen[rows])
         assert (found.cause, found.numbers) == (
             None,
-            "the motion is that of a = 1.93 a_0, b = 0.9 b_0, r0 = r0_0; psidot0 is 9",
+            "the motion is that of a top with a = 1.93 a_0, b = 0.9 b_0, r0 = r0_0; psidot0 is 9",
         )
 
 

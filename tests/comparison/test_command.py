@@ -96,7 +96,7 @@ def test_conventions_by_options(lagtop: Lagtop, right: Path, tmp_path: Path) -> 
     result = lagtop("compare", tmp_path / "a.txt", *OPTIONS, *how)
     assert result.exit_code == 0
     wrong = lagtop("compare", right, *OPTIONS, "--rates-frame", "space")
-    assert "the rates are in the frame of body (--rates-frame body)" in wrong.stdout
+    assert "the rates are in the body frame (--rates-frame body)" in wrong.stdout
 
 
 def test_quantities_that_agree_at_first_are_compared(lagtop: Lagtop, tmp_path: Path) -> None:
