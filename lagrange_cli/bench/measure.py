@@ -110,6 +110,10 @@ def measure(
     checked = list(task.exact)
     times = task.times[checked] if method.has_fixed_steps else task.times
     setups, seconds = list[float](), list[float]()
+
+    def ended(verdict: str, why: object) -> Row:
+        return row._replace(verdict=verdict, remark=f"{verdict}: {why}")
+
     try:
         with np.errstate(all="ignore"):  # numbers that are not finite have an infinite error
             while len(setups) < min(2, runs):  # the first one may import
@@ -122,16 +126,16 @@ def measure(
                 seconds.append(time.process_time() - begun)
             found = attitudes(columns)
     except SlowError:
-        return row._replace(remark=f"too slow: more than {limit:g} s")
+        return ended("too slow", f"more than {limit:g} s")
     except ImportError as failure:
         remedy = install("bench") if failure.name == "heyoka" else f"pip install {failure.name}"
-        return row._replace(remark=f"not installed: {remedy}")
+        return ended("not installed", remedy)
     except (LagtopError, ArithmeticError, ValueError) as failure:
-        return row._replace(remark=f"failed: {failure}")
+        return ended("failed", failure)
     at_checked = found if method.has_fixed_steps else found[checked]
     error = max(map(rotation_angle, at_checked.tolist(), task.exact.values()))
     if not math.isfinite(error):
-        return row._replace(remark="failed: numbers are not finite")
+        return ended("failed", "numbers are not finite")
     return row._replace(
         error_rad=error,
         ns_per_sample=min(seconds[1:] or seconds) / task.times.size * 1e9,

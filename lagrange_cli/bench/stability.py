@@ -93,9 +93,9 @@ def compared(kind: str, motion: Motion) -> Iterator[Row]:
         )
         for name in COMPARED:
             row = measure(task, name, METHODS[name].settings[-1], SLOW, runs=1)
-            verdict = verdict_of(row.error_rad, rounding, row.remark)
-            row = row._replace(input_rounding=rounding, verdict=verdict)
-            yield row._replace(periods=span, inputs=motion.top.as_text())
+            verdict = row.verdict or verdict_of(row.error_rad or 0.0, rounding)
+            row = row._replace(input_rounding=rounding, verdict=verdict, periods=span)
+            yield row._replace(inputs=motion.top.as_text())
 
 
 def neighbours(top: Top) -> Iterator[Reference]:
@@ -106,10 +106,8 @@ def neighbours(top: Top) -> Iterator[Reference]:
             yield Reference(top.replace(**{name: moved}))
 
 
-def verdict_of(error: float | None, rounding: float, remark: str | None = None) -> str:
-    """Return the verdict on a run: from its remark, or from its error and the input rounding."""
-    if error is None:
-        return (remark or "").partition(":")[0]
+def verdict_of(error: float, rounding: float) -> str:
+    """Return the verdict on the error of a run, beside the effect of input rounding."""
     if error <= AT_ROUNDING * rounding:
         return VERDICTS[0]
     return "lost" if error > LOST else "inaccurate"
