@@ -227,8 +227,9 @@ def test_results_are_tables_in_a_notebook() -> None:
     assert rows["m"] == ["m", "mass", "1587.0", "mass", ""]
     assert rows["regime"][2] == "sleeping"
     assert "path" not in rows  # it is None
-    (table,) = tables_of(Result()._repr_markdown_())
+    (table,) = tables_of(text := Result()._repr_markdown_())
     assert table == [["Key", "Value"], ["m", "1.0"]]
+    assert re.search(r"^\|[ -]+\|[ -]+: *\|$", text, re.MULTILINE)  # numbers stand at the right
 
 
 class Result(HasRecord):
