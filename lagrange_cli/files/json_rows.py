@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 
 from ..arithmetic.text import quoted, shortened
-from ..errors import LagtopError
+from ..errors import DataError, LagtopError
 from ..names import repeated
 
 MOST_CELLS = 1 << 17
@@ -19,12 +19,17 @@ _MOST_DEPTH = 20
 
 
 def json_value(text: str, line: int | None = None) -> Any:
-    """Return a JSON value; an error names the line of an array.  Raises LagtopError."""
+    """Return a JSON value.
+
+    Raises LagtopError, or DataError with the line of a file if the text begins on its `line`.
+    """
     try:
         value = orjson.loads(text)
     except orjson.JSONDecodeError as error:
-        place = "" if line is None else f"line {line + error.lineno - 1}: "
-        raise LagtopError(f"{place}not JSON: {error.msg} at character {error.colno}") from None
+        wrong = f"not JSON: {error.msg} at character {error.colno}"
+        if line is None:
+            raise LagtopError(wrong) from None
+        raise DataError(f"line {line + error.lineno - 1}: {wrong}") from None
     if text.count(":") != _keys_in(value):  # a key is named twice, or a text has a colon
         json.loads(text, object_pairs_hook=_once)
     return value

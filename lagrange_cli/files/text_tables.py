@@ -439,9 +439,10 @@ def _json_table(
             raise DataError(f"{name}: a JSON array must have at most {most}")
         try:
             rows = rows_of_value(json_value(whole, number), known)
+        except DataError as error:
+            raise DataError(f"{name}, {error}") from None
         except LagtopError as error:
-            place = ", " if str(error).startswith("line") else f", line {number}: "
-            raise DataError(f"{name}{place}{error}") from None
+            raise DataError(f"{name}, line {number}: {error}") from None
         table = replace(table, rows=[*enumerate(rows, 1)], place="row")
         if rows and isinstance(rows[0], list):
             return replace(table, headings=None, width=len(rows[0]))
