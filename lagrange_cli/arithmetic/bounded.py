@@ -172,13 +172,17 @@ def relative_errors(x: Bounded) -> Any:
     return np.where(x.error == 0, 0.0, x.error / x.size)
 
 
-def known(x: Bounded, relative: float) -> Bounded:
-    """Return numbers with one bound of their relative errors, NaN where theirs is larger."""
+def known(x: Bounded, relative: float, *, positive: bool = True) -> Bounded:
+    """Return numbers with one bound of their relative errors, NaN where theirs is larger.
+
+    By default, none is negative.
+    """
+    x.positive = positive
     if x.relative is not None and x.relative <= relative:
         return x
     fine = x.error <= relative * x.size
     value = x.value if fine.all() else choose(fine, x, Bounded(np.nan)).value
-    return Bounded(value, None, relative, positive=x.positive)
+    return Bounded(value, None, relative, positive=positive)
 
 
 def sqrt(x: Bounded) -> Bounded:

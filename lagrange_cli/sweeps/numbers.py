@@ -147,12 +147,6 @@ class Gaps(NamedTuple):
     a_above_u3: Bounded  # a (u3 - 1)
 
 
-def _known(x: Bounded, relative: float) -> Bounded:
-    """Return numbers that are not negative, with one bound of their relative errors."""
-    x.positive = True
-    return known(x, relative)
-
-
 class ArrayNumbers(dict[str, Any]):
     """The numbers of many motions by name, as bounded numbers; each is computed on first use.
 
@@ -265,7 +259,7 @@ class ArrayNumbers(dict[str, Any]):
         differences, or quotients by f(1) = -(beta - b)^2 and f(-1) = -(beta + b)^2.
         """
         if self.finer:
-            return Gaps(*(_known(x.rounded(), _FROM_PAIRS) for x in self.finer["gaps"]))
+            return Gaps(*(known(x.rounded(), _FROM_PAIRS) for x in self.finer["gaps"]))
         a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
         sine, zero = self["theta0"][0], Bounded(0.0, positive=True)
         if self.steady:
@@ -281,7 +275,7 @@ class ArrayNumbers(dict[str, Any]):
         return Gaps(zero, fall, far, above, above_u2, below, below_u2, a_above_u3)
 
     def _root(self, x: Bounded) -> Bounded:
-        return x if self.pairs else _known(x, _RELEASED)
+        return x if self.pairs else known(x, _RELEASED)
 
     def _gaps_of_any_start(self) -> Gaps:
         a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))

@@ -266,4 +266,4 @@ def _from_form(key: str, numbers: Mapping[str, Array], tilt: Angles) -> Bounded:
         found = Quantities(pairs, pi=lambda: pi_of(pairs=True), u0=tilt.cosine)[replaced_by(key)]
         if FORMS[key].bound == "0 or more":
             found = choose(numbers[key] >= 0, found, UNKNOWN)
-        return known(found, _KNOWN)
+        return known(found, _KNOWN, positive=False)
