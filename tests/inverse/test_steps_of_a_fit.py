@@ -1,4 +1,4 @@
-"""Parts of a fit against numbers that are known before: starts, descent, noise, means, decay."""
+"""Parts of a fit against numbers that are known before: descent, noise, means, decay."""
 
 from __future__ import annotations
 
@@ -8,10 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from engines import Body, dop853
-from lagtop import Top, fit, solve
-from noisy_recordings import recording_from
-from scipy.spatial.transform import Rotation
+from lagtop import fit
 
 from lagrange_cli.inverse.checks import CHANCE, Residuals
 from lagrange_cli.inverse.decay import decay_of
@@ -21,41 +18,8 @@ from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.signals import (
     mean_rate,
     neighbour_noise,
-    oscillation_in,
-    signals_in,
     step_between,
 )
-from lagrange_cli.inverse.starts import starts
-
-BODY = {"m": 0.5, "A": 4.45e-3, "C": 2.5e-3, "s": 0.08, "g": 9.81}
-
-
-@pytest.mark.parametrize(
-    ("names", "known", "close"),
-    [("theta psi", False, 0.02), ("theta", False, 0.25), ("psi", True, 0.45), ("phi psi", 0, 0.4)],
-)
-@pytest.mark.parametrize("start", [{"thetadot0": 4, "psidot0": 3}, {"psidot0": -2}])
-@pytest.mark.parametrize("r0", [52.0, -70.0])
-def test_some_start_is_close_to_the_top(
-    names: str, known: bool, close: float, start: dict[str, float], r0: float
-) -> None:
-    top = Top(**BODY, r0=r0, theta0_deg=65, **start)
-    motion = solve(top)
-    period, t = motion.T_nutation, np.linspace(0, 5.3, 300)
-    turns = Rotation.from_quat(dop853(Body.of(top), t * period)[1][:, :4], scalar_first=True)
-    psi, theta, phi = turns.as_euler("ZXZ").T
-    seen = {"theta": theta, "psi": psi, "phi": phi}
-    signals = signals_in(recording_from(t, **{x: seen[x] for x in names.split()}))
-    frequency, is_visible = oscillation_in(signals)
-    assert is_visible
-    assert frequency == pytest.approx(1, abs=2e-3)
-    found = starts(signals, math.radians(65) if known else None)
-    rates = [top.thetadot0 * period, top.psidot0 * period]
-    exact = np.array([motion.a * period**2, motion.b * period, math.radians(65), *rates])
-    if names == "theta":  # which does not show the sign of b and of psi'
-        found = np.concatenate([found, found * [1, -1, 1, 1, -1]])
-    sizes = np.abs(exact) + 0.1 * abs(exact[1]) * np.array([0, 0, 0, 1, 1])
-    assert (np.abs(found - exact) / sizes).max(axis=1).min() < close
 
 
 def test_a_bent_valley_is_followed_to_its_end() -> None:
