@@ -15,6 +15,8 @@ MOST_ROWS = 1000
 """Rows of the fit that finds a minimum; its last steps use all rows."""
 _STEPS = 40
 """Steps of a descent at most."""
+_SMALL = 0.1
+"""Fall of chi^2 by the last of the steps with all rows at most."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 _DEPENDENT = 1e-7
@@ -112,15 +114,16 @@ def converged(
     `floors`.  `factors` widen them for noise that is correlated.  The last steps with all rows, and
     the shape of chi^2, are for a `final` minimum.
     """
-    whole, is_given = problem.recording.t.size, bool(problem.recording.sigma)
-    problem = replace(problem, sizes=problem.sizes * factors) if is_given else problem
-    for rows in (MOST_ROWS, *[whole] * (final and whole > MOST_ROWS)):
-        few = problem.thinned(rows)
-        if is_given:
-            x, _ = few.solve(x, _STEPS, central=final and rows == MOST_ROWS)
-        else:
-            few, x = few.reweighted(x, floors, _STEPS // 2, central=final and rows == MOST_ROWS)
-            problem = replace(problem, sizes=few.sizes)
+    few = problem.thinned(MOST_ROWS)
+    if is_given := bool(problem.recording.sigma):
+        problem, few = (replace(y, sizes=y.sizes * factors) for y in (problem, few))
+        x, _ = few.solve(x, _STEPS)
+    else:
+        few, x = few.reweighted(x, floors, _STEPS // 2)
+        problem = replace(problem, sizes=few.sizes)
+    if final and problem.recording.t.size > MOST_ROWS:
+        x, _ = problem.solve(x, _STEPS, _SMALL, central=False)
+        problem = problem if is_given else problem.with_noise(x, floors)
     problem = problem if is_given else replace(problem, sizes=problem.sizes * factors)
     found = minimum_at(problem, x)
     return shaped(found) if final else found

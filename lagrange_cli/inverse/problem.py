@@ -27,6 +27,8 @@ _LEAST_A = 1e-9
 """Least a, in units of the period."""
 _FAR = 1e3
 """Weighted residual of a motion that does not exist."""
+_AT_ONCE = 50_000
+"""Angles that are computed at once."""
 _ESTIMATES = 6
 """Most estimates of the noise from the residuals."""
 _SETTLED = 0.02
@@ -101,7 +103,9 @@ class Problem:
         """Return theta, phi and psi, shape (3, starts, tries, times)."""
         v, states, phi, psi = self._started(x, who)
         different, same = np.unique(states.reshape(-1, 6), axis=0, return_inverse=True)
-        found = angles(different, t)[:, same].reshape(3, *states.shape[:2], t.size)
+        blocks = np.array_split(t, different.shape[0] * t.size // _AT_ONCE + 1)
+        motion = np.concatenate([angles(different, x) for x in blocks], axis=-1)
+        found = motion[:, same].reshape(3, *states.shape[:2], t.size)
         rate = v["r0"] - self.turns - states[..., 1]
         found[1] += rate[..., np.newaxis] * t + phi[..., np.newaxis]
         found[2] += psi[..., np.newaxis]
@@ -146,19 +150,21 @@ class Problem:
         how: dict[str, Any] = {"central": central, "settled": self.settled}
         return descended(self.weighted, x, steps, gain=gain, **how)
 
-    def reweighted(
-        self, x: Array, least: Array, steps: int, *, central: bool
-    ) -> tuple[Problem, Array]:
-        """Return the least squares whose standard deviations are those of the residuals."""
-        problem, present = self, self.recording.present
+    def with_noise(self, x: Array, least: Array) -> Problem:
+        """Return the problem with the standard deviations of the residuals of one start."""
+        present = self.recording.present
         share = present.sum() / max(present.sum() - x.size, 1)
+        rest = np.where(present, self.residuals(x[:, np.newaxis])[0, 0], np.nan)
+        sizes = np.maximum(np.sqrt(np.nanmean(rest**2, axis=1) * share), least)
+        return replace(self, sizes=sizes)
+
+    def reweighted(self, x: Array, least: Array, steps: int) -> tuple[Problem, Array]:
+        """Return the least squares whose standard deviations are those of the residuals."""
+        problem = self
         for _ in range(_ESTIMATES):
-            x, _ = problem.solve(x, steps, central=central)
-            rest = np.where(present, problem.residuals(x[:, np.newaxis])[0, 0], np.nan)
-            sizes = np.maximum(np.sqrt(np.nanmean(rest**2, axis=1) * share), least)
-            is_done = np.allclose(sizes, problem.sizes, rtol=_SETTLED)
-            problem = replace(problem, sizes=sizes)
-            if is_done:
+            x, _ = problem.solve(x, steps)
+            old, problem = problem, problem.with_noise(x, least)
+            if np.allclose(old.sizes, problem.sizes, rtol=_SETTLED):
                 break
         return problem, x
 
