@@ -26,10 +26,10 @@ from noisy_recordings import (
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
-from lagrange_cli.inverse.advice import evenly_timed, release
 from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
 from lagrange_cli.inverse.known import known_inputs
+from lagrange_cli.inverse.rows import evenly_timed, release
 from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.top.given import gather
 from lagrange_cli.top.values import values_of
