@@ -68,17 +68,20 @@ _CLOSER = 0.3
 
 
 class Advice:
-    """The search for what makes a failed fit good, the likeliest mistakes first."""
+    """The search for what makes a failed fit good, the likeliest mistakes first.
 
-    def __init__(self, recording: Measured, known: Known, outcome: Outcome) -> None:
+    Some fits of the recording `again` have been made before.
+    """
+
+    def __init__(self, recording: Measured, known: Known, outcome: Outcome, again: int = 0) -> None:
         self.recording, self.known, self.outcome = recording, known, outcome
         self.kinds = {x.kind for x in outcome.failed}
         self.body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
         if len(recording.angles) == 1:  # of which a known start is a part
             self.body = dict(known)
-        self.left, self.is_early = _BUDGET, True
         self.cost = 1 + recording.t.size / _LONG
         self.cost *= 1.0 if "theta" in recording.angles else _WITHOUT_TILT
+        self.left, self.is_early = _BUDGET - again * self.cost, True
 
     def reasons(self) -> Iterator[Reason]:
         """Yield advice, the best first."""

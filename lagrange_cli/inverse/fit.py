@@ -33,14 +33,14 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
 
     Raises DataError for a recording that cannot be fitted.
     """
-    outcome = best_fit(recording, known, units=units)
+    outcome, again = best_fit(recording, known, units=units), 0
     if {Kind.OPEN, Kind.MOTION} & {x.kind for x in outcome.failed}:
         frequency = frequency_of_parts(recording)
         if abs(math.log(frequency / outcome.frequency)) > _OTHER:
-            other = best_fit(recording, known, units=units, frequency=frequency)
+            other, again = best_fit(recording, known, units=units, frequency=frequency), 1
             if not other.is_open:
                 outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
-    advice = Advice(recording, known, outcome)
+    advice = Advice(recording, known, outcome, again)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
         is_late = outcome.neighbours is not None and outcome.neighbours.late is not None

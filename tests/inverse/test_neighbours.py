@@ -96,6 +96,28 @@ def test_a_model_error_holds_a_stand_that_is_not_seen() -> None:
     assert off < 3 * outcome.model_errors["a"] + 2 * found.std / a
 
 
+def test_a_body_that_is_not_round_is_named_with_a_spin_that_is_not_seen() -> None:
+    t = np.linspace(0, 3, 300)
+    noise = np.random.default_rng(3).normal(scale=1e-3, size=(2, t.size))
+    seen = unlike(A, B, R0, START, t, beside=0.2)
+    outcome = fit(t, theta=seen["theta"] + noise[0], psi=seen["psi"] + noise[1])
+    assert "a centre of mass off the axis by " in outcome.failure()
+    spin = float(outcome.failure().rpartition("if r0 = ")[2].split(";")[0])
+    assert abs(spin - R0) < 1
+
+
+def test_rows_that_may_be_lost_are_in_the_model_error() -> None:
+    """Two rows of 63 are too few to be sure of."""
+    t = np.arange(63) / 60
+    seen = gimballed(A, B, R0, START, np.arange(65) / 60)
+    noise = np.random.default_rng(3).normal(scale=0.05, size=(2, 65))
+    kept = np.delete(np.arange(65), [30, 31])
+    one = fit(t, theta=(seen["theta"] + noise[0])[kept], psi=(seen["psi"] + noise[1])[kept])
+    off = abs(one.numbers["a"].value - A)
+    model = one.model_errors.get("a", 0.0) * A
+    assert one.verdict == "failed" or off < 5 * one.numbers["a"].std + model
+
+
 def test_a_jump_is_named() -> None:
     t, (theta, phi, psi) = noisy()
     outcome = fit(t, theta=theta, phi=phi, psi=np.where(t > 1.2, psi + 0.1, psi))

@@ -286,7 +286,7 @@ def held(outcome: Any, case: Drawn) -> bool:
 
 def named(outcome: Any, case: Drawn) -> str:
     """Return `right first`, `right` among others, `wrong name` or `no name`."""
-    first, *others = (outcome.neighbour or outcome.failure()).split(" or ")
+    first, *others = outcome.failure().split(" or ")
     words = MACHINES[case.look].words.split("|")
     if any(x in first for x in words):
         return "right first"
