@@ -130,7 +130,7 @@ def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:
         faults.append(Reason(Kind.OPEN, also))
     if best.unknown:
         known = [x for x in best.unknown if not x.endswith("_zero")] or best.unknown
-        missing = f"the recording does not determine {' and '.join(known)}"
+        missing = f"the recording does not determine {', '.join(known)}"
         faults.append(Reason(Kind.OPEN, missing))
     elif best.is_curved:
         hardly = (

@@ -165,7 +165,7 @@ def find_tops(search: Search, count: int | None = None) -> tuple[list[Motion], s
             found = _minima(search, values, off)
             points, double = [x for x, _ in found], [x for x, is_double in found if is_double]
         nearest = [values[np.argmin(_distances(search, off)[1])]]
-    ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
+    ranges = ", ".join(f"{name} from {span}" for name, span in search.spans.items())
     looked = f"scanned {ranges} at {each} values: solutions closer together may be missed"
     if len(axes) > 1:
         looked = f"scanned {ranges} at {each} values each: only the best points were followed"
