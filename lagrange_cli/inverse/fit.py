@@ -36,7 +36,7 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     outcome, again = best_fit(recording, known, units=units), 0
     if {Kind.OPEN, Kind.MOTION} & {x.kind for x in outcome.failed}:
         frequency = frequency_of_parts(recording)
-        if abs(math.log(frequency / outcome.frequency)) > _OTHER:
+        if frequency and abs(math.log(frequency / outcome.frequency)) > _OTHER:
             other, again = best_fit(recording, known, units=units, frequency=frequency), 1
             if not other.is_open:
                 outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))

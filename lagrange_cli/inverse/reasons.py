@@ -39,7 +39,7 @@ class Kind(IntEnum):
     """Advice: what to check, because nothing else explains the failure."""
 
 
-NEEDS_ADVICE = {Kind.OPEN, Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
+NEEDS_ADVICE = {Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
 """Kinds that a mistake in the recording may cause."""
 MISFITS = {Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS, Kind.SIGMA}
 """Kinds of a motion that does not match the recording."""

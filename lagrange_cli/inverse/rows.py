@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.types import Array, Mask
-from .measured import Measured, frames_of
+from .measured import LEAST_ROWS, Measured, frames_of
 from .signals import noise_of, oscillation_in, signals_in
 
 _COARSE = 0.05
@@ -59,15 +59,16 @@ def repeated(recording: Measured) -> str:
 
 
 def frequency_of_parts(recording: Measured) -> float:
-    """Return the higher frequency of the nutation in both halves, as harmonics show it.
+    """Return the higher frequency of a nutation that is visible in a half, 0 if there is none.
 
     In a recording whose rows are lost or whose motion changes, harmonics of a lower one describe
     the whole better.
     """
-    middle = recording.t.size // 2
+    if (middle := recording.t.size // 2) <= LEAST_ROWS:
+        return 0.0
     halves = (recording.part(x) for x in (slice(middle), slice(middle, None)))
     found = [oscillation_in(signals_in(x)) for x in halves]
-    return max([x for x, is_visible in found if is_visible], default=found[0][0])
+    return max((x for x, is_visible in found if is_visible), default=0.0)
 
 
 def with_gap(recording: Measured, row: int, count: int) -> Measured:
