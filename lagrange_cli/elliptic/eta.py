@@ -41,8 +41,8 @@ layout | | outer roots | |
 kind | | radicand | |
 g | g | -2 α1 c² | 1/time² | (3.2.1)
 Constants
-m_prime | m' | at δ | | (3.2.3)
-m_double_prime | m" | at δ* | | (3.2.3)
+m_prime | m' | √(product of distances from δ to outer roots) | | (3.2.3)
+m_double_prime | m" | √(product of distances from δ* to outer roots) | | (3.2.3)
 k | k | modulus of (3.2.4) | | (3.2.5)
 k_imag | k/i | imaginary modulus of (3.2.4) | | (3.2.5)
 k1 | k1 | modulus | | (3.2.8)
@@ -75,7 +75,7 @@ class Quadrature(NamedTuple):
     g: Fraction = Fraction(1)
     """Absolute value of the leading coefficient."""
     height: Fraction = Fraction(0)
-    """Absolute value of the imaginary parts of a complex pair."""
+    """Absolute value of the imaginary parts of a complex pair; 0 if all roots are real."""
 
     def check(self) -> None:
         """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root."""
@@ -125,12 +125,14 @@ class Quadrature(NamedTuple):
 class EtaConstants(NamedTuple):
     """The constants of (3.2.3) to (3.2.12) and the complement k1', in balls.
 
-    m1 and m2 are m' and m''.  For a complex pair of roots, k and k1 are divided by i, and k1' is
-    above 1.  The period is that of eta, 4 K1/sigma1.
+    For a complex pair of roots, k and k1 are divided by i, and k1' is above 1.  The period is that
+    of eta, 4 K1/sigma1.
     """
 
     m1: arb
+    """m' (3.2.3)."""
     m2: arb
+    """m'' (3.2.3)."""
     k: arb
     k1: arb
     k1_prime: arb
@@ -148,19 +150,29 @@ class EtaConstants(NamedTuple):
 
 
 def eta_constants(quadrature: Quadrature) -> EtaConstants:
-    """Return the constants in balls."""
+    """Return the constants in balls, from distances between roots, so that no digits cancel.
+
+    With D = delta - delta*, and the distance R of the outer roots (1 for one root, 0 for none),
+
+        k1 = D R/r^2,  k1' = 2 sqrt(m' m'')/r,  sigma1 = sqrt(g) r/2,
+        T = 2 pi/agm(sigma1, sqrt(g m' m''))
+
+    Here r is m' + m'' if fewer than two outer roots are finite, and sqrt((m' + m'')^2 - D^2) for a
+    complex pair.  For two real ones it is sqrt(a1 b2) + sqrt(a2 b1), where a1 and a2 are their
+    distances from delta, and b1 and b2 those from delta*.
+    """
     lower, upper, outer, g, height = quadrature
     distances = ([abs(root - end) for root in outer] for end in (upper, lower))
     m1, m2 = (exact(prod(x, start=Fraction(1)) + height**2).sqrt() for x in distances)
     width, total, product = exact(upper - lower), m1 + m2, exact(g) * m1 * m2
-    crossed, apart = total, Fraction(len(outer))
+    r, apart = total, Fraction(len(outer))
     if height:
-        crossed, apart = ((total - width) * (total + width)).sqrt(), 2 * height
+        r, apart = ((total - width) * (total + width)).sqrt(), 2 * height
     elif len(outer) > 1:
-        ways = (exact(abs((outer[i] - lower) * (outer[1 - i] - upper))) for i in (0, 1))
-        crossed, apart = sum((way.sqrt() for way in ways), arb(0)), abs(outer[0] - outer[1])
-    k1, k1_prime = width * exact(apart) / crossed**2, 2 * (m1 * m2).sqrt() / crossed
-    k, sigma1 = k1 / k1_prime, exact(g).sqrt() * crossed / 2
+        crossed = (exact(abs((outer[i] - lower) * (outer[1 - i] - upper))) for i in (0, 1))
+        r, apart = sum((x.sqrt() for x in crossed), arb(0)), abs(outer[0] - outer[1])
+    k1, k1_prime = width * exact(apart) / r**2, 2 * (m1 * m2).sqrt() / r
+    k, sigma1 = k1 / k1_prime, exact(g).sqrt() * r / 2
     return EtaConstants(
         *(m1, m2, k, k1, k1_prime, sigma1),
         s=(m2 * exact(upper) - m1 * exact(lower)) / total,
@@ -207,14 +219,14 @@ def eta_columns(
 ) -> dict[str, Any]:
     """Return ETA_COLUMNS at a time, theta in radians.
 
-    h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1),
-    eta = (gamma + s xi')/(1 + d xi') (3.2.11)
+    h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1) (3.2.11),
+    eta = (gamma + s xi')/(1 + d xi') by (3.2.2) and (3.2.12)
     """
     h1 = c.sigma1 * (exact(tau) - c.period / 4)
     am, sn, cn, dn = (z.real for z in functions.jacobi(Point(h1)) if z is not None)
-    below = 1 + c.d * sn
-    eta: Cell = (c.gamma + c.s * sn) / below
-    rate: Cell = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / below**2
+    denominator = 1 + c.d * sn
+    eta: Cell = (c.gamma + c.s * sn) / denominator
+    rate: Cell = (c.s - c.d * c.gamma) * c.sigma1 * cn * dn / denominator**2
     if quadrature.lower == quadrature.upper:
         eta, rate = quadrature.lower, Fraction(0)
     return dict(zip(ETA_COLUMNS, (tau, eta, rate, h1, am, sn), strict=True))

@@ -184,7 +184,7 @@ def _thetas(request: FunctionRequest, functions: Functions, u: Point) -> Values:
     for ij, slope in functions.zetas(u).items() if "zeta" in families else ():
         found[f"zeta{ij}"] = _on_axes(slope, u, odd=True, is_real=is_real)
     if not {*NEVILLE}.isdisjoint(families):
-        of, factor = functions.neville(u), (functions.bend * value**2).exp()
+        of, factor = functions.neville(u), (functions.exponent * value**2).exp()
         for name in NEVILLE:
             if name in families:
                 z = of[name[-1]] * factor

@@ -1,8 +1,9 @@
 """The functions of one modulus, as balls of Arb: Jacobi's, theta, Zeta, Omega and Pi.
 
 All functions reduce to a modulus k in [0, 1] (see `modulus`), with the argument z = u/2K in periods
-and tau = iT, T = K'/K.  Jacobi's, theta and Zeta functions are quotients of Arb's theta functions.
-Omega and Pi are differences of logarithms of theta functions.
+and tau = i K'/K.  Jacobi's, theta and Zeta functions are quotients of Arb's theta functions.
+Omega and Pi are those of Chrapan, whose equation numbers are cited: differences of logarithms of
+theta functions.
 
 Results have the precision of Arb in use.  Raises TooFewDigitsError if a branch needs more digits.
 """
@@ -22,7 +23,10 @@ THIRD = ("01", "00", "11")
 _NUMBERS = {"01": 3, "00": 2, "11": 0, "10": 1}
 """The theta functions theta4, theta3, theta1 and theta2 of pi z: their places in Arb's tuple."""
 _REDUCED = {Kind.IMAGINARY: {"01": "00", "00": "01"}, Kind.LARGE: {"00": "10"}}
-"""The function of the reduced modulus that replaces each function, if the index differs."""
+"""The function of the reduced modulus that replaces each function, if the index differs.
+
+For an imaginary modulus by (2,2) and (2,3).
+"""
 _LETTERS = {Kind.IMAGINARY: "scnd", Kind.LARGE: "sdcn"}
 """The letters of Neville's functions of the reduced modulus that replace s, c, d and n."""
 
@@ -68,21 +72,22 @@ class Functions:
         """Periods 2K' in a unit of the argument."""
         if rates:
             self.scale, self.across = rates
-        self.rate, self.tau, self.bend = acb(self.scale), None, acb(0)
-        """1/2K and iK'/K of the modulus itself.
+        self.rate, self.tau, self.exponent = acb(self.scale), None, acb(0)
+        """1/2K and iK'/K of the modulus itself, and the exponent of its theta functions.
 
-        Its theta functions of u have the factor exp(bend u^2) compared with the reduced modulus.
+        They are those of the reduced modulus times exp(exponent u^2).
         """
-        self.T = self.scale / self.across
+        self.ratio = self.scale / self.across
+        """K'/K of the reduced modulus."""
         if self.is_0 or self.is_1:
             return
-        self.tau = self.reduced_tau = reduced = acb(0, 1) * self.T
+        self.tau = self.reduced_tau = reduced = acb(0, 1) * self.ratio
         self.at_0 = acb.modular_theta(acb(0), reduced)
         if self.kind is Kind.IMAGINARY:
             self.tau = reduced + 1
         elif self.kind is Kind.LARGE:
             self.tau, self.rate = reduced / (1 - reduced), self.rate / (1 - reduced)
-            self.bend = acb(0, -1) * arb.pi() * self.scale**2 / (1 - reduced)
+            self.exponent = acb(0, -1) * arb.pi() * self.scale**2 / (1 - reduced)
 
     def point(self, x: ExactComplex) -> Point:
         """Return an exact number, with multiples of the modulus' own K and K', as a point.
@@ -106,14 +111,14 @@ class Functions:
 
     def _periods(self, at: Point) -> Any:
         """Return the real part in units of 2K, exactly if it is a multiple of K."""
-        return at.real * self.scale + at.K / 2 + (at.K_prime and at.K_prime * self.T / 2)
+        return at.real * self.scale + at.K / 2 + (at.K_prime and at.K_prime * self.ratio / 2)
 
     def _height(self, at: Point) -> Any:
         """Return the imaginary part in units of 2K', exactly if it is a multiple of K'."""
-        return at.imag * self.across + at.iK_prime / 2 + (at.iK and at.iK / (2 * self.T))
+        return at.imag * self.across + at.iK_prime / 2 + (at.iK and at.iK / (2 * self.ratio))
 
     def neville(self, u: Point) -> dict[str, acb]:
-        """Return Neville's functions theta_s to theta_n, without exp(bend u^2), by letter.
+        """Return Neville's functions theta_s to theta_n, without exp(exponent u^2), by letter.
 
         Every quotient pq of Glaisher is theta_p/theta_q.
         """
@@ -163,7 +168,7 @@ class Functions:
         return {ij: values[n] for ij, n in _NUMBERS.items()}
 
     def zetas(self, v: Point) -> dict[str, acb | None]:
-        """Return Z_ij(v), the derivative of log Theta_ij(v); Z_11 has a pole at 0."""
+        """Return Z_ij(v) of section 1, the derivative of log Theta_ij(v); Z_11 has a pole at 0."""
         x = self.value(v)
         values = self.thetas(x * self.rate)
         if self.tau is None:
@@ -178,12 +183,12 @@ class Functions:
     ) -> dict[str, tuple[acb | None, acb | None]]:
         """Return Omega_ij(u, v) = log[Theta_ij(u - v)/Theta_ij(u + v)]/2 and Pi_ij(u, v) by index.
 
-        Pi_ij = u Z_ij(v) + Omega_ij; `zetas` are the Z_ij(v).  The logarithms are those of
-        `_logarithms`.  None stands for a pole.
+        Pi_ij = u Z_ij(v) + Omega_ij (3,1), (3,2); `zetas` are the Z_ij(v).  The logarithms are
+        those of `_logarithms`.  None stands for a pole.
         """
         less, more = u.plus(v, -1), u.plus(v, 1)
         ends, argument = (self._logarithms(less), self._logarithms(more)), self.value(u)
-        added = -2 * self.bend * argument * self.value(v)
+        added = -2 * self.exponent * argument * self.value(v)
         found: dict[str, tuple[acb | None, acb | None]] = {}
         for ij in THIRD:
             inner, zeta = _REDUCED.get(self.kind, {}).get(ij, ij), zetas[ij]
@@ -202,7 +207,7 @@ class Functions:
 
         It is continuous between the lines on which theta_ij has its zeros, conjugate at conjugate
         points, and the mean of both sides on such a line.
-        With z - n tau in the strip |Im z| <= T/2 around the real axis, n even or odd halves,
+        With z - n tau in the strip of height Im tau around the real axis, n even or odd halves,
 
             log theta(z) = i pi (n^2 tau - 2 n z + n a) + log theta_0a(z - n tau),
 
@@ -226,10 +231,14 @@ class Functions:
         return found
 
     def _in_strip(self, x: Any, within: Any, height: Any, n: fmpq) -> list[acb]:
-        """Return the logarithms with the number n, at a point and at one within half a period."""
-        thetas = acb.modular_theta(acb(within, (height - n) * self.T), self.reduced_tau)[2:]
+        """Return log theta_ij of `_logarithms` with the number n, for the second index 0 and 1.
+
+        The point has the real part x, in units of 2K, and the imaginary part `height`, in units of
+        2K'; `within` is x less the nearest integer.
+        """
+        thetas = acb.modular_theta(acb(within, (height - n) * self.ratio), self.reduced_tau)[2:]
         return [
-            theta.log() + arb.pi() * n * acb((2 * height - n) * self.T, a - 2 * x)
+            theta.log() + arb.pi() * n * acb((2 * height - n) * self.ratio, a - 2 * x)
             for a, theta in enumerate(thetas)
         ]
 

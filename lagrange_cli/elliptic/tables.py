@@ -41,7 +41,7 @@ def table_rows(
 
     def row(x: ExactComplex) -> dict[str, Any]:
         of_x = [*x, *inputs]
-        return numbers(lambda digits: columns(x, known(digits)), of_x, digits, strict=False)
+        return numbers(lambda working: columns(x, known(working)), of_x, digits, strict=False)
 
     rows = map(row, arguments)
     first = next(rows)
