@@ -48,6 +48,8 @@ _FOLLOWED = 6
 """Neighbours among which the name is chosen."""
 _STEPS = 2
 """How often templates are computed again, along the motion that they change."""
+_SMALLEST = 1e-5
+"""Size below which digits of the data and of the motion count."""
 _LARGEST = 0.5
 """Size from which a change is not a small one, so that its template is wrong."""
 _WIDEST = 1 / (2 * math.pi**2)
@@ -395,6 +397,7 @@ class Neighbours:
         )
         if one.name == LOST:
             is_possible = abs(size) > 0.5 and abs(size - round(size)) < max(3 * std, 0.1)
+        is_possible &= abs(size) > (_SMALLEST**2 if one.is_square else _SMALLEST)
         is_far = any(x.is_large or x.outliers.any() for x in rests)
         is_possible &= not is_far or chi2 * _EXPLAINS < self.chi2
         unseen = min(small, abs(size) + _UNSEEN * std)
