@@ -15,7 +15,7 @@ from ..sweeps.records import sweep
 from ..top.inputs import all_replaced
 from ..top.units import Units
 from .conditions import Comparison, Vector
-from .known import Known, body_numbers, in_all_forms, time_power
+from .known import CONTRADICTS, Known, body_numbers, in_all_forms, time_power
 from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
 from .reasons import Kind, Reason
@@ -90,7 +90,7 @@ def nutating_outcome(
     }
     unit = {x: y / np.linalg.norm(y) for x, y in body.items()}
     products = [x for x in numbers if set(x) & set("*/") and is_spin_known]
-    notes = [*assumed, *[_wish(products)] * bool(products)]
+    notes = [*assumed, *[_wish(products)] * bool(products), *_too_small(pairs, vector.known)]
     if recording.angles.keys() == {"theta"} and vector.known.get("psidot0") == (0, 0):
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     values = {x: y[0] for x, y in pairs.items()}
@@ -119,6 +119,20 @@ def _wish(products: Sequence[str]) -> str:
     names = sorted({x for product in products for x in re.findall(r"\w+", product)})
     some = " or ".join(names) + " is" if len(names) == 2 else f"some of {', '.join(names)} are"
     return f"only {' and '.join(products)} can be determined, unless {some} given"
+
+
+def _too_small(pairs: Mapping[str, tuple[float, ...]], known: Known) -> list[str]:
+    """Return a note if A is below m s^2, by more than the uncertainties of A, m and s."""
+    if not {"m", "s"} <= known.keys() or "A" not in pairs:
+        return []
+    (m, m_std), (s, s_std), (A, A_std, *_) = known["m"], known["s"], pairs["A"]
+    least, std = m * s**2, math.hypot(A_std, m_std * s**2, 2 * m * s * s_std)
+    if A + CONTRADICTS * std >= least:
+        return []
+    return [
+        f"A is impossible: a rigid body needs A > m s^2 = {least:.5g}: check the values and units "
+        "of m, s and g"
+    ]
 
 
 def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:

@@ -62,6 +62,17 @@ def test_a_known_rate_of_spin_is_no_total_spin(known: Any, truth: dict[str, floa
             assert getattr(again, key) == pytest.approx(getattr(exact, key), rel=0.02), key
 
 
+@pytest.mark.parametrize(
+    ("s", "is_possible"), [(0.08, True), (8.0, False), ("8 +/- 4", True)], ids=str
+)
+def test_a_moment_below_that_of_a_point_mass_is_noted(s: Any, is_possible: bool) -> None:
+    """A grows as s, and m s^2 as its square: s in cm makes A = 0.445 less than m s^2 = 32."""
+    t, seen = recorded("theta", "psi", seed=8)
+    notes = fitted(t, seen, known=LAB | {"s": s}).notes
+    wrong = "A is impossible: a rigid body needs A > m s^2 = 32: check the values and units of m, s"
+    assert any(x.startswith(wrong) for x in notes) != is_possible
+
+
 def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
     t, seen = recorded("theta", "psi", seed=9)
     sure, unsure = (fitted(t, seen, known=LAB | {"C": c}).numbers for c in (2.5e-3, "0.0025(1)"))
