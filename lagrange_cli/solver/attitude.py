@@ -79,9 +79,9 @@ class Nutation:
         self.ratio: arb | None = None if of["m_k"].is_zero() else of["K_prime"] / of["K"]
         """K'/K, or None if k = 0."""
         self.hyperbolic = self.ratio is not None and float(self.ratio.mid()) < 1
-        """Whether K > K'."""
-        self.bend = of["height"] * of["narrow"] / 2
-        """-u'' at u1."""
+        """Whether K > K': the theta functions are then series in the nome of k' (see `series`)."""
+        self.acceleration = of["height"] * of["narrow"] / 2
+        """-u'' at u1, that is, -f'(u1)/2 (4,9)."""
         self.sides = _sides(facts, of, of["K_prime"] if self.hyperbolic else of["K"])
         """The constants of X and of Y."""
 
@@ -213,7 +213,7 @@ def course_of(facts: Facts, of: Names) -> Course:
 
 
 def _falls(facts: Facts) -> int:
-    """Return 1 if the tilt grows after t = 0, else -1."""
+    """Return -1 if the nutation rate is negative at the start, else 1."""
     return -1 if facts.inputs["thetadot0"] < 0 else 1
 
 
@@ -224,7 +224,7 @@ def _time_of_a_radian(*rates: arb) -> arb:
 
 
 def start_of(facts: Facts, of: Names) -> Attitude:
-    """Return the attitude at t = 0, from the inputs of a motion."""
+    """Return the attitude at t = 0 from the inputs of a motion; it has no periodic parts."""
     pole, half = facts.pole, arb.atan2(*of["theta0"]) / 2
     x, y = (arb(pole > 0), arb(pole < 0)) if pole else (half.cos(), half.sin())
     return Attitude(x, y, arb(0), arb(0), of["thetadot0"])
@@ -252,7 +252,7 @@ def _sides(facts: Facts, of: Names, unit: arb) -> tuple[Side, Side]:
 
 
 def _since_u1(facts: Facts, of: Names) -> arb:
-    """Return the periods from the nearest passage of u1 to t = 0, by (4,22)-(4,24)."""
+    """Return the periods from the nearest passage of u1 to t = 0, by (4,23) and (4,24)."""
     if facts.turning:
         return arb(1 - facts.turning) / 4
     u0 = of["u0"]

@@ -124,8 +124,8 @@ for _name, _column in SCALARS.items():
 DEFAULT_COLUMNS = ("t", *ANGLES)
 REDUCED = {"phi": "spin_turn", "psi": "precession_turn"}
 """The names, in formulas, of phi and psi within a turn."""
-TIMELESS = frozenset({"t", "r"})
-"""Columns that do not need the attitude."""
+WITHOUT_ATTITUDE = frozenset({"t", "r"})
+"""Columns that need no attitude."""
 WITHIN_A_TURN = frozenset(
     "p q axis_x axis_y quaternion_w quaternion_x quaternion_y quaternion_z".split()
 ) | {*REDUCED.values(), *COLUMNS["matrix"], *COLUMNS["omega"]}

@@ -58,9 +58,9 @@ class Facts(NamedTuple):
     a: Fraction
     """2mgs/A (4,4)."""
     b: fmpq_poly
-    """C r0/A (4,5), linear in u if r0 is derived from the rate of phi; unused for a word."""
+    """C r0/A (4,5), linear in u if r0 is derived from phi'; unused if psidot0 is a word."""
     rate: Spin
-    """r0, linear in the precession if it is derived from the rate of phi."""
+    """r0, linear in psi' if it is derived from phi'."""
     spin: int
     """The sign of r0."""
     pole: int
@@ -69,8 +69,11 @@ class Facts(NamedTuple):
     """The sign of beta - b, the momentum at the upper pole.  If 0, 1 is a root of the cubic."""
     plus: int = 1
     """The sign of beta + b, the momentum at the lower pole.  If 0, -1 is a root of the cubic."""
-    fall: int = 0
-    """The sign of -u'' at a start without nutation rate: 1 at u1, -1 at u2, 0 if the tilt stays."""
+    acceleration: int = 0
+    """The sign of theta'' at a start without nutation rate: 1 at u1, -1 at u2, 0 if the tilt stays.
+
+    It is the sign of -u''.
+    """
     over: int = 1
     """The sign of alpha - a, if beta = b: the root 1 is u1 if it is 1, u3 if -1, and both if 0."""
 
@@ -82,12 +85,12 @@ class Facts(NamedTuple):
     @property
     def turning(self) -> int:
         """1 for a start at u1, -1 at u2, 0 between."""
-        return self.pole or (0 if self.inputs["thetadot0"] else self.fall)
+        return self.pole or (0 if self.inputs["thetadot0"] else self.acceleration)
 
     @property
     def steady(self) -> bool:
         """The tilt does not change."""
-        return not (self.inputs["thetadot0"] or self.fall)
+        return not (self.inputs["thetadot0"] or self.acceleration)
 
     @property
     def vertical(self) -> bool:
@@ -185,8 +188,8 @@ def facts_of(top: Top) -> Facts:
     exact = exact_inputs(top.given)
     inputs, rate = {name: exact[name] for name in names}, top.exact_spin
     m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))
-    a, fall_rate, turn = 2 * m * g * s / A, inputs["thetadot0"], inputs.get("psidot0", Fraction(0))
-    r0 = fmpq_poly([rational(rate.constant), rational(rate.share * turn)])
+    a, precession = 2 * m * g * s / A, inputs.get("psidot0", Fraction(0))
+    r0 = fmpq_poly([rational(rate.constant), rational(rate.share * precession)])
     tilt = top.exact_tilt
     equal = equal_digits([*inputs.values(), rate.constant, tilt.number])
     if not rate.share:
@@ -194,28 +197,30 @@ def facts_of(top: Top) -> Facts:
     facts = Facts(top, inputs, tilt, equal, a, rational(C / A) * r0, rate, 0, tilt.pole)
     if top.steady_word:
         return facts._replace(spin=_spin_of_a_word(facts))
-    if top.pole and turn:
+    if top.pole and precession:
         raise LagtopError(
-            f"psidot0 must be 0 if the axis is vertical, got {float(turn)} "
+            f"psidot0 must be 0 if the axis is vertical, got {float(precession)} "
             "(a vertical axis cannot precess; count the rate as spin)",
             "psidot0",
         )
-    return _decided(facts, rational(turn), rational(fall_rate))
+    return _decided(facts, rational(precession), rational(inputs["thetadot0"]))
 
 
-def _decided(facts: Facts, turn: fmpq, fall_rate: fmpq) -> Facts:
+def _decided(facts: Facts, precession: fmpq, nutation: fmpq) -> Facts:
     """Return facts with their signs, from the rates of precession and nutation."""
     a, b, pole, sign = rational(facts.a), facts.b, facts.pole, facts.sign
     # beta - b = (1 - u) (psi' (1 + u) - b) and beta + b = (1 + u) (psi' (1 - u) + b) (4,5)
-    minus = 0 if pole > 0 else sign(turn * (1 + _U) - b)
-    plus = 0 if pole < 0 else sign(turn * (1 - _U) + b)
+    minus = 0 if pole > 0 else sign(precession * (1 + _U) - b)
+    plus = 0 if pole < 0 else sign(precession * (1 - _U) + b)
     # alpha - a = theta'^2 - (1 - u) (a - psi' b) if beta = b, that is, b = psi' (1 + u)
-    over = (
-        1 if minus or (pole and not fall_rate) else sign(fall_rate**2 - (1 - _U) * (a - turn * b))
-    )
+    at_1 = nutation**2 - (1 - _U) * (a - precession * b)
+    over = 1 if minus or (pole and not nutation) else sign(at_1)
     # u'' = -(1 - u^2) (a - 2 b psi' + 2 psi'^2 u)/2 if theta' = 0
-    fall = 1 if fall_rate else 0 if pole else sign(a - 2 * turn * b + 2 * turn**2 * _U)
-    return facts._replace(spin=sign(b), minus=minus, plus=plus, over=over, fall=fall)
+    slope = a - 2 * precession * b + 2 * precession**2 * _U
+    acceleration = 1 if nutation else 0 if pole else sign(slope)
+    return facts._replace(
+        spin=sign(b), minus=minus, plus=plus, over=over, acceleration=acceleration
+    )
 
 
 def _spin_of_a_word(facts: Facts) -> int:

@@ -282,7 +282,7 @@ def lacks(name: str, facts: Any) -> bool:
 def exists(name: str, facts: Any, of: Any) -> Any:
     """Return whether a motion has a number: its formula may name only numbers that it has.
 
-    `of` tells which numbers exist.
+    `of.has(name)` returns whether it has another number.
     """
     if lacks(name, facts):
         return False

@@ -42,21 +42,24 @@ def nome_of(k: arb, k_prime: arb) -> arb:
 
 
 def complete_E(k_prime: arb) -> arb:
-    """Return the complete integral of the second kind, 2 R_G(0, k'^2, 1)."""
+    """Return the complete integral of the second kind E(k), 2 R_G(0, k'^2, 1)."""
     if k_prime.is_zero():
         return arb(1)
     return 2 * acb.elliptic_rg(acb(0), acb(square(k_prime)), acb(1)).real
 
 
 def integral_F(sine: arb, cosine: arb, k: arb) -> arb:
-    """Return Legendre's integral F(phi, k') by sine and cosine of phi times one number."""
+    """Return Legendre's integral F(phi, k'), where k' is the complement of k.
+
+    The sine and the cosine of phi may have a common positive factor.
+    """
     s2, c2 = square(sine), square(cosine)
     terms = c2, c2 + square(k) * s2, c2 + s2
     return sine * acb.elliptic_rf(*map(acb, terms)).real
 
 
 def ellint_E(phi: arb, k: arb) -> arb:
-    """Return Legendre's integral of the second kind."""
+    """Return Legendre's incomplete integral of the second kind, E(phi, k)."""
     return acb.elliptic_e_inc(acb(phi), acb(square(k))).real
 
 
@@ -227,6 +230,7 @@ class Numbers(dict[str, Any]):
     def pole_integral(self, pole: int) -> arb:
         """Return Q (pole = 1) or P (pole = -1): K times the mean of (beta + b pole)/(1 + u pole).
 
+        The mean over a period replaces the integral (3,8).
         If the axis passes over the pole where 1 + u pole = 0, psi + pole phi grows by a whole turn
         per period there.  On the vertical all of the rotation counts as spin.
         """

@@ -113,7 +113,7 @@ class Solution:
         return next((word for word, holds in path_words(self.facts, self) if holds), None)
 
     def precession_at(self, u: str) -> int:
-        """Return the sign of b (beta - b u), the precession rate at u1 or u2 relative to r0."""
+        """Return the sign of b (beta - b u): 1 if the precession at u1 or u2 has the sign of r0."""
 
         def value(digits: int) -> arb:
             of = self.balls(digits)

@@ -31,7 +31,7 @@ from ..errors import LagtopError, OutOfRangeError
 from ..names import ANGLES
 from ..top.ranges import MAX_PERIODS, MAX_TIME
 from .attitude import Course, Nutation
-from .columns import FORMULAS, REDUCED, TIMELESS, WITHIN_A_TURN, Columns
+from .columns import FORMULAS, REDUCED, WITHIN_A_TURN, WITHOUT_ATTITUDE, Columns
 from .series import Frame, near, theta_series
 
 MOST_TURNS = 2.0**51
@@ -223,7 +223,7 @@ class ThetaParts:
         self.first = near(scale * offset)
         """Argument at t = 0."""
         self.slopes = {f"slope_{x}": near(y / scale) for x, y in zip("XY", slopes, strict=True)}
-        """What is added to arg X and arg Y per unit of the argument to make them periodic."""
+        """Rates, per unit of the argument, that make arg X and arg Y periodic when added."""
         self.over_pole = not all(part[0] for frame in self.frames for part in frame.parts[::2])
         self.hyperbolic, self.steep = of.hyperbolic, near(scale) > 2 * _STEEPEST
 
@@ -269,7 +269,8 @@ def swing_parts(
 ) -> Iterator[tuple[Index, dict[str, Any]]]:
     """Yield the parts of X and Y on the separatrix at all times.
 
-    1 - u = (1 - u2)/cosh^2 h, h = rate t + h0.  A constant tilt is a swing at the rate 0.
+    1 - u = (1 - u2)/cosh^2 h, h = rate t + h0.  The constants are those of `SingleSwing`: x, y,
+    rate and h0.  A constant tilt is a swing at the rate 0; only then `tilt` is used.
     """
     x, y, rate, h0 = constants
     h = t * rate + h0
@@ -283,7 +284,10 @@ def swing_parts(
 
 
 class Sampler:
-    """The angles of one motion over time, unless `is_ordinary` is false: doubles cannot do it."""
+    """The angles and columns of one motion over time, in doubles.
+
+    If `is_ordinary` is false, a constant is too large or too small for doubles: only `check` works.
+    """
 
     def __init__(self, of: Course, tilt: arb) -> None:
         """Take the constants of a motion and its tilt at t = 0.
@@ -307,7 +311,7 @@ class Sampler:
         of_Y = Growth((precession - spin) / 2, y, unit, 0.5)
         self.known = _FUNCTIONS | {"of_spin": self.spin, "of_precession": self.precession}
         self.known |= {"of_X": of_X, "of_Y": of_Y}
-        """What formulas need at any time."""
+        """The items of formulas that do not depend on time."""
         if isinstance(of, Nutation):
             self.parts: ItemsAt = ThetaParts(of).at
         else:
@@ -340,7 +344,7 @@ class Sampler:
         """
         names = [REDUCED.get(name, name) for name in names] if wrap else names
         farthest = self.check(t, wrap=not WITHIN_A_TURN.isdisjoint(names))
-        moves, found = not TIMELESS.issuperset(names), np.empty((len(names), t.size))
+        moves, found = not WITHOUT_ATTITUDE.issuperset(names), np.empty((len(names), t.size))
         known |= self.known
         with np.errstate(all="ignore"):
             for first in range(0, t.size, BLOCK):  # short arrays stay in the cache

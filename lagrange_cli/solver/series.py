@@ -75,9 +75,11 @@ def theta_series(of: Nutation) -> tuple[list[Frame], arb, list[arb]]:
     stretch = 1 / of.ratio if hyperbolic and of.ratio is not None else arb(1)
     nome = arb(0) if of.ratio is None else (-pi * (stretch if hyperbolic else of.ratio)).exp()
     x, y = (_polynomials(side, nome, hyperbolic) for side in of.sides)
-    # theta1(2x), with the slope of sin(theta) theta' at u1, where |X|^2 + |Y|^2 is 1
+    # N^2 sin(theta) theta', N = |X|^2 + |Y|^2, is theta1(2x) times a number.  N is 1 at u1, so the
+    # slope is -u'' there.
     weights = [arb(0), arb(1), arb(0), -(nome**2), arb(0), nome**6, arb(0), -(nome**12)]
-    unit = of.period * of.bend / (pi * stretch) / sum(2 * n * w for n, w in enumerate(weights))
+    at_0 = sum(2 * n * w for n, w in enumerate(weights))
+    unit = of.period * of.acceleration / (pi * stretch) / at_0
     rate = unit * _summed(SIN_EVEN, weights, hyperbolic)
     scale = pi / 2 * stretch
     most = scale.exp() / 4 if hyperbolic else arb(0.5)
