@@ -22,7 +22,10 @@ NO_SPREAD = "motions one standard deviation away lack it, or it is beyond the ra
 
 
 def spread_of(found: Given, motion: Motion) -> Spread:
-    """Return the spread of a motion; raise LagtopError for an input that cannot change so much."""
+    """Return the spread of a motion.
+
+    Raises LagtopError for an input that has no possible value one standard deviation away.
+    """
     spread = Spread(motion, found.stds)
     for name, std in found.stds.items():
         if std and not spread.beside(name, 1):
@@ -39,7 +42,7 @@ class UncertainRecord(NamedTuple):
     """Values as `value(uncertainty)`, for people."""
     lost: list[str]
     """The numbers without an uncertainty."""
-    unfair: list[str]
+    nonlinear: list[str]
     """The numbers that do not change in proportion to the inputs."""
 
 
@@ -60,7 +63,7 @@ def uncertain_record(
         dict(record) | {f"{name}_std": stds.get(name) for name in numbers},
         texts,
         [x for x in present if x not in known],
-        [x for x, y in known.items() if not y.fair],
+        [x for x, y in known.items() if not y.linear],
     )
 
 
@@ -101,8 +104,8 @@ def budget(found: Given, motion: Motion, key: str, units: Units) -> tuple[Report
     value = motion.record(radians=units.radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is {motion.absence(key)}")
-    whole = spread_of(found, motion).number(key)
-    if whole is None or not math.isfinite(whole.std):
+    uncertainty = spread_of(found, motion).number(key)
+    if uncertainty is None or not math.isfinite(uncertainty.std):
         raise AbsentError(f"{key} has no uncertainty: {NO_SPREAD}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     shown, four_digits = _units(found, [key, *given]), "{:.4g}".format
@@ -115,22 +118,22 @@ def budget(found: Given, motion: Motion, key: str, units: Units) -> tuple[Report
         Field("elasticity", "elasticity", four_digits),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
     ]
-    sum_of_squares = math.fsum(x * x for x in whole.contributions.values())
+    sum_of_squares = math.fsum(x * x for x in uncertainty.contributions.values())
     lines = [
         BudgetLine(
             *(name, given[name], std, part / std, part),
             elasticity=part / std * given[name] / value if value else None,
             share=part * part / sum_of_squares if sum_of_squares else None,
         )
-        for name, part in whole.contributions.items()
+        for name, part in uncertainty.contributions.items()
         for std in [found.stds[name]]
     ]
     lines.sort(key=lambda line: -abs(line.contribution or 0.0))
-    text = uncertain_text(_to_the_last_digit(motion, key, value, whole.std), whole.std)
+    text = uncertain_text(_to_the_last_digit(motion, key, value, uncertainty.std), uncertainty.std)
     value_and_unit = f"{key} = {text} {shown.get(key, '')}".rstrip()
     conclusion = f"{value_and_unit}; inputs are taken as independent."
-    rows = [*lines, BudgetLine(key, value, whole.std)]  # last, as in EA-4/02
-    return Report({"key": key}, fields, rows, [conclusion], shown), whole.fair
+    rows = [*lines, BudgetLine(key, value, uncertainty.std)]  # last, as in EA-4/02
+    return Report({"key": key}, fields, rows, [conclusion], shown), uncertainty.linear
 
 
 def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:

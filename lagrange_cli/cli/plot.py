@@ -120,7 +120,7 @@ def plot_command(
     require_matplotlib()  # also for standard output, which has no name to check
     from ..plot.film import SECONDS, film_bytes
     from ..plot.pictures import Options, angle_columns, figure_of
-    from .uncertainty import column_stds, warn_if_unfair
+    from .uncertainty import column_stds, warn_if_nonlinear
 
     axes = {"x": _axis("--x", x, top), "y": _axis("--y", y, top)}
     others = {"t_max": t_max} | dict(filter(None, axes.values()))
@@ -155,7 +155,7 @@ def plot_command(
                 figure = figure_of(drawn, kinds, options, title, _caption(caption, len(motions)))
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
-    warn_if_unfair(stds)
+    warn_if_nonlinear(stds)
 
 
 def _caption(text: str | None, scenes: int) -> list[str]:

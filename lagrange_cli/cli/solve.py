@@ -80,9 +80,9 @@ def solve_command(
         budget = key_of(budget, units)
         from ..account.uncertain import budget as budget_of
 
-        report, is_fair = budget_of(found, motion, budget, units)
+        report, is_linear = budget_of(found, motion, budget, units)
         remedy = "use --samples 10000 in place of --budget"
-        uncertainty.warn_of_unfair([] if is_fair else [budget], remedy)
+        uncertainty.warn_of_nonlinear([] if is_linear else [budget], remedy)
         opt.write_report(out, lambda: report)
         return
     steps = _steps_of_section_8(motion, units) if derivation else {}

@@ -59,7 +59,7 @@ def table_command(
     from ..recordings.times import read_times
     from ..solver.columns import DEFAULT_COLUMNS, chosen_columns
     from ..solver.tables import ProvedTable, grid, rows
-    from .uncertainty import column_stds, warn_if_unfair
+    from .uncertainty import column_stds, warn_if_nonlinear
 
     out = opt.with_mark(out, decimal, reads=times is not None)
     opt.exclude(n=n, dt=dt)
@@ -89,7 +89,7 @@ def table_command(
         named = {x: how["units"].named(column.unit) for x, column in chosen}
         shown = opt.with_units(header, named, out)
         out.rows(header, with_progress(parts, "rows", at.count or None, len), shown)
-        warn_if_unfair(stds)
+        warn_if_nonlinear(stds)
     except LagtopError as error:
         late = ": use --digits" if isinstance(error, OutOfRangeError) and error.key else ""
         if times is not None and error.key == "t":

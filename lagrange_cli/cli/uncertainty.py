@@ -35,11 +35,11 @@ def with_stds(
     """
     drawn = _of_random_tops(found, motion, [*record], samples) if samples else None
     uncertainty = drawn.get if drawn is not None else spread_of(found, motion).number
-    record, texts, lost, unfair = uncertain_record(motion, record, uncertainty)
+    record, texts, lost, nonlinear = uncertain_record(motion, record, uncertainty)
     if lost:
         why = "all random tops lack it" if samples else NO_SPREAD
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {why}")
-    warn_of_unfair(unfair, "use --samples 10000")
+    warn_of_nonlinear(nonlinear, "use --samples 10000")
     return record, texts
 
 
@@ -69,12 +69,12 @@ def _of_random_tops(
         complain(f"Warning: of {samples} random tops {', '.join(lost)}")
     found_stds = {x: (float(y.std()), float(np.abs(y).max())) for x, y in there.items() if y.size}
     return {
-        x: Uncertainty(std if std > _ROUNDING * size else 0.0, {}, fair=True)
+        x: Uncertainty(std if std > _ROUNDING * size else 0.0, {}, linear=True)
         for x, (std, size) in found_stds.items()
     }
 
 
-def warn_of_unfair(names: Collection[str], remedy: str, ending: str = "") -> None:
+def warn_of_nonlinear(names: Collection[str], remedy: str, ending: str = "") -> None:
     """Warn of results that do not change in proportion to the inputs."""
     if names:
         complain(
@@ -93,8 +93,8 @@ def column_stds(found: Given, motion: Motion, names: Sequence[str]) -> ColumnSpr
     return ColumnSpread(spread_of(found, motion), chosen)
 
 
-def warn_if_unfair(stds: ColumnSpread | None) -> None:
+def warn_if_nonlinear(stds: ColumnSpread | None) -> None:
     """Warn of columns that do not change in proportion to the inputs, after the last row."""
-    if stds and stds.unfair:
-        since = f" from t = {min(stds.unfair.values(), key=abs):g}"
-        warn_of_unfair(stds.unfair, "draw random tops in Python", since)
+    if stds and stds.nonlinear:
+        since = f" from t = {min(stds.nonlinear.values(), key=abs):g}"
+        warn_of_nonlinear(stds.nonlinear, "draw random tops in Python", since)

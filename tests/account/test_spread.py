@@ -85,7 +85,7 @@ def test_random_tops_have_the_same_spread_or_the_number_is_named(
         found = Spread(motion, stds).number(key)
         assert found is not None
         true = math.sqrt(np.nanmean((results[key] - getattr(motion, key)) ** 2))
-        assert found.std == pytest.approx(true, rel=0.05 if found.fair else 0.3), key
+        assert found.std == pytest.approx(true, rel=0.05 if found.linear else 0.3), key
 
 
 def test_next_to_a_pole_the_angles_are_spread_as_elsewhere() -> None:
@@ -97,7 +97,7 @@ def test_next_to_a_pole_the_angles_are_spread_as_elsewhere() -> None:
     columns = ColumnSpread(spread, ["psi", "dpsi"])
     found = np.degrees(columns(np.array([0.28579709769770545])))
     assert found[0] == pytest.approx(8.5e-4, rel=0.01)
-    assert [*columns.unfair] == ["dpsi"]  # the mean rate jumps at the pole
+    assert [*columns.nonlinear] == ["dpsi"]  # the mean rate jumps at the pole
 
 
 def test_at_the_end_of_a_range_one_direction_counts() -> None:
@@ -105,7 +105,7 @@ def test_at_the_end_of_a_range_one_direction_counts() -> None:
         [name] = stds
         found = Spread(solve(Top(**inputs)), stds).number(name)
         assert found is not None
-        assert (found.std, found.fair) == (stds[name], True)
+        assert (found.std, found.linear) == (stds[name], True)
 
 
 def test_ratios_beyond_the_doubles() -> None:
@@ -122,7 +122,7 @@ def test_a_root_that_is_0_on_one_side_is_not_fair() -> None:
     """2 sqrt(A m g s max(cos theta0, 0))/C at 90 degrees: half the difference grows as a root."""
     found = Spread(solve(Top(theta0_deg=90)), {"theta0_deg": 0.1}).number("r0_steady_min")
     assert found is not None
-    assert not found.fair
+    assert not found.linear
 
 
 def test_derivatives_are_by_the_inputs_that_were_given() -> None:
