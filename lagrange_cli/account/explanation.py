@@ -147,9 +147,9 @@ def _symbols() -> dict[str, str]:
 
 
 def _with_limits(formula: str, facts: Facts) -> str:
-    """Return a formula with the limits of 0/0 or 0 infinity on a pole that the axis passes over.
+    """Return a formula with the limits of P and Q for a pole that the axis passes over.
 
-    It turns by half a turn there, so that the mean over a period is half a turn per period.
+    P and Q are 0 times infinity or 0/0.  At the pole, psi jumps by half a turn once in a period.
     """
     for name, pole, passes in (("P", "upper", facts.over_top), ("Q", "lower", facts.over_bottom)):
         limit = f"2*pi*K/T_nutation (limit over the {pole} pole)"

@@ -6,8 +6,9 @@ The attitude is a pair of complex numbers, the Cayley-Klein parameters:
 
 Let z be the number of nutation periods since a passage of u1.  Apart from a uniform rotation and a
 common positive factor, X is theta2 and Y is theta1 of the angle pi (z - i s y), with a sign s and a
-place y of its own.  The phase is counted from the nearer turning point: X or Y then has a positive
-real part, and its argument cannot jump.  Equation numbers are Chrapan's.
+place y of its own.  (After release from rest, (psi + phi)/2 and (psi - phi)/2 contain Pi_00 and
+Pi_11 of (4,29) and (4,34).)  The phase is counted from the nearer turning point: X or Y then has a
+positive real part, and its argument cannot jump.  Equation numbers are Chrapan's.
 
 A course has the constants of one motion in one precision.  Among them are `spin` and `precession`,
 the mean rates, `unit`, a unit of time, and `start`, arg X and arg Y at t = 0 without their mean
@@ -59,7 +60,7 @@ class Side(NamedTuple):
     sign: int
     """s, the direction in which the argument of X or Y turns: by half a turn per period."""
     place: arb
-    """F/2K or, if the motion is `hyperbolic`, F/2K', with an integral F of modulus k'.
+    """F/2K or, if the motion is `hyperbolic`, F/2K', with the integral F of `_sides`.
 
     It is exactly 0 if the axis passes over the pole where X or Y is 0.
     """
@@ -233,21 +234,23 @@ def start_of(facts: Facts, of: Names) -> Attitude:
 def _sides(facts: Facts, of: Names, unit: arb) -> tuple[Side, Side]:
     """Return the constants of X and Y, with places in units of K or K'.
 
-    For X, sn^2 F = (1 + u2)/(1 + u1).  For Y, sn^2 F = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
+    A place is an integral F of modulus k'.  For X, sn^2 F = (1 + u2)/(1 + u1).  For Y, sn^2 F =
+    (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).  After release from rest, F is K' - alpha for X and alpha
+    for Y (4,31)-(4,33).
     """
     height, wide, low = of["height"], of["wide"], 1 - of["u2"]
     far = wide - of["a"] * low  # a (u3 - 1)
     found = []
-    for over_pole, momentum, sine2, cosine2, size2 in (
+    for over_pole, sign_of_momentum, sine2, cosine2, size2 in (
         (facts.over_bottom, facts.plus, 1 + of["u2"], height, 1 + of["u1"]),
         (facts.over_top, facts.minus, (1 - of["u1"]) * wide, height * far, low * of["k_prime"]),
     ):
         amplitude = arb.atan2(root(sine2), root(cosine2))
         F = acb.elliptic_f(acb(amplitude), acb(of["m_k_prime"])).real
-        if not (momentum or over_pole):  # u3 = 1
+        if not (sign_of_momentum or over_pole):  # u3 = 1
             F = of["K_prime"]
         place = arb(0) if over_pole else arb(0.5) if F is unit else F / unit / 2
-        found.append(Side(momentum or 1, place, root(size2 / 2)))
+        found.append(Side(sign_of_momentum or 1, place, root(size2 / 2)))
     return found[0], found[1]
 
 

@@ -59,8 +59,8 @@ class Facts(NamedTuple):
     """2mgs/A (4,4)."""
     b: fmpq_poly
     """C r0/A (4,5), linear in u if r0 is derived from phi'; unused if psidot0 is a word."""
-    rate: Spin
-    """r0, linear in psi' if it is derived from phi'."""
+    r0: Spin
+    """The total spin rate, linear in psi' if it is derived from phi'."""
     spin: int
     """The sign of r0."""
     pole: int
@@ -186,15 +186,15 @@ def facts_of(top: Top) -> Facts:
     names = ["m", "A", "C", "s", "g", "thetadot0", *["psidot0"] * (not top.steady_word)]
     names += [name for name in top.given if name in DECLARED and name in FORMS]
     exact = exact_inputs(top.given)
-    inputs, rate = {name: exact[name] for name in names}, top.exact_spin
+    inputs, spin = {name: exact[name] for name in names}, top.exact_spin
     m, A, C, s, g = (inputs[name] for name in ("m", "A", "C", "s", "g"))
     a, precession = 2 * m * g * s / A, inputs.get("psidot0", Fraction(0))
-    r0 = fmpq_poly([rational(rate.constant), rational(rate.share * precession)])
+    r0 = fmpq_poly([rational(spin.constant), rational(spin.share * precession)])
     tilt = top.exact_tilt
-    equal = equal_digits([*inputs.values(), rate.constant, tilt.number])
-    if not rate.share:
-        inputs["r0"] = rate.constant
-    facts = Facts(top, inputs, tilt, equal, a, rational(C / A) * r0, rate, 0, tilt.pole)
+    equal = equal_digits([*inputs.values(), spin.constant, tilt.number])
+    if not spin.share:
+        inputs["r0"] = spin.constant
+    facts = Facts(top, inputs, tilt, equal, a, rational(C / A) * r0, spin, 0, tilt.pole)
     if top.steady_word:
         return facts._replace(spin=_spin_of_a_word(facts))
     if top.pole and precession:
@@ -228,6 +228,6 @@ def _spin_of_a_word(facts: Facts) -> int:
     rates = rates_of(facts.top.given)
 
     def r0(_: int) -> arb:
-        return facts.rate.ball(rates.rate(str(facts.top.steady_word)), facts.tilt)
+        return facts.r0.ball(rates.rate(str(facts.top.steady_word)), facts.tilt)
 
-    return sign_to(r0, facts.equal) if facts.rate.share else facts.sign(facts.b)
+    return sign_to(r0, facts.equal) if facts.r0.share else facts.sign(facts.b)

@@ -186,7 +186,7 @@ V | | cos ϑ between two quarters | cos | (5,2)
 sine_V | | sin ϑ between two quarters | | (5,2)
    | sqrt((above_u1 + height*k_prime/(1 + k_prime))*(below_u2 + height/(1 + k_prime)))
 nutation | | angle of the nutation | angle | | theta_max - theta_min
-excess | | excess of the mean rate over the elementary rate, in ppm | | §8
+excess | | excess of the mean rate over the elementary rate, in ppm | |
    | 1000000*(mean_precession_rate/precession_rate_elementary - 1)
 swing_rate | | rate of the swing on the separatrix | rad/time | | course.rate
 lowest | | time at which the axis is lowest | time | | -course.h0/course.rate

@@ -1,8 +1,8 @@
 """The numbers of a motion: the formulas of `keys`, evaluated as they stand, in balls of Arb.
 
-Formulas may lose digits: a ball that has lost too many is computed again with more.  What is
-not a formula of the table is here: the functions that formulas use, the roots of the cubic, the
-mean of 1/(1 - u), and the limits.  Equation numbers are Chrapan's.
+Formulas may lose digits: a ball that has lost too many is computed again with more.  This module
+adds the functions that formulas use, the roots of the cubic, the mean of 1/(1 - u), and the limits.
+Equation numbers are Chrapan's.
 """
 
 # mypy: disable-error-code="no-any-return"
@@ -123,7 +123,7 @@ class Numbers(dict[str, Any]):
     @property
     def r0(self) -> arb:
         """The total spin rate, derived from the rate of phi."""
-        return self.facts.rate.ball(self["psidot0"], self.facts.tilt)
+        return self.facts.r0.ball(self["psidot0"], self.facts.tilt)
 
     @property
     def psidot0(self) -> arb:

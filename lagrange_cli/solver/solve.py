@@ -72,10 +72,10 @@ class Motion(Solution):
 
     @property
     def swing(self) -> Swing | None:
-        """The only swing on the separatrix, with its `rate` and its `lowest` point; else None.
+        """The only swing on the separatrix: its `rate`, and the time `lowest`; else None.
 
         The cosine of the tilt is u = u2 + (1 - u2) tanh^2(rate (t - lowest)).  The rate, in radians
-        per unit of time, and the time `lowest` are correctly rounded.
+        per unit of time, and the time at which the axis is lowest are correctly rounded.
         """
         if not self.facts.separatrix:
             return None
@@ -136,7 +136,8 @@ class Motion(Solution):
         """Return tilt, spin and precession (radians) at the times t, in the shape of t.
 
         Spin and precession are unwrapped and 0 at t = 0; `wrap` reduces them to (-pi, pi].  Raises
-        LagtopError for a time that is not finite or is beyond 2^50 nutation periods.
+        LagtopError for a time that is not finite or is beyond 2^50 nutation periods or, with
+        `wrap`, beyond 2^51 turns.
         """
         from .sampling import Angles  # start-up
 
@@ -193,8 +194,9 @@ class Motion(Solution):
     ) -> dict[str, Array]:
         """Return columns of `lagtop table` by name, each a float64 array in the shape of t.
 
-        Angles are in radians; `axis`, `quaternion`, `matrix` and `omega` stand for several, which
-        may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
+        Angles are in radians, and `wrap` reduces phi and psi to (-pi, pi].  `axis`, `quaternion`,
+        `matrix` and `omega` stand for several columns, which may also be named singly.  Raises
+        LagtopError for an unknown or repeated column and for a time out of range.
         """
         from ..arithmetic.arrays import doubles_of  # start-up
         from .columns import chosen_columns
