@@ -79,13 +79,16 @@ class Legendre:
         self.above_1 = self.known_m if modulus.kind is Kind.LARGE else None
         """The parameter m if it is above 1."""
         self.complete = self._within(arb(1), arb(0), arb(0), Fraction(1))
-        """The integrals to pi/2."""
+        """The complete integrals, to pi/2."""
         K, E, _ = self.complete
         self.mean = acb(0) if K is None or E is None else E / K
-        """E/K, also in the limit k = 1."""
+        """E/K, the mean of dn^2; 0, its limit, for k = 1."""
 
     def at(self, phi: ExactComplex, units: Units = DEGREES) -> Integrals:
-        """Return the integrals of an amplitude, by f(phi + pi) = f(phi) + 2 f(pi/2)."""
+        """Return the integrals of an amplitude in `units`, degrees or radians.
+
+        They follow from those of the first quarter by f(phi + pi) = f(phi) + 2 f(pi/2).
+        """
         square: Fraction | arb
         if units.radians and phi.real:
             half_turns = nearest(exact(phi.real) / arb.pi())
@@ -139,7 +142,7 @@ class Legendre:
 
     def _first_quarter(self, square: Fraction | arb) -> acb:
         """Return F of an amplitude in the first quarter, from its squared sine."""
-        t, d = (x if isinstance(x, arb) else exact(x) for x in (square, 1 - self.known_m * square))
+        t, d = _ball(square), _ball(1 - self.known_m * square)
         return acb(t.sqrt()) * acb.elliptic_rf(acb(1 - t), acb(d), acb(1))
 
     def _within(self, sine: arb, cosine: arb, height: arb, square: Fraction | arb) -> Integrals:
@@ -194,20 +197,21 @@ def _each(function: Callable[..., acb], *integrals: Integrals) -> Integrals:
     return Integrals(*(None if any(x is None for x in part) else function(*part) for part in parts))
 
 
+def _ball(x: Fraction | arb) -> arb:
+    """Return a number in a ball."""
+    return x if isinstance(x, arb) else exact(x)
+
+
 def _sign(x: Fraction | arb) -> int:
     """Return the sign of a number."""
-    if isinstance(x, arb):
-        return sign(x)
-    n = x.numerator
-    return (n > 0) - (n < 0)
+    return sign(_ball(x))
 
 
 def _side(q: Fraction | arb, square: Fraction | arb) -> int:
-    """Return the sign of 1 - q sin^2 phi."""
+    """Return the sign of 1 - q sin^2 phi, from sin^2 phi; exactly if both numbers are fractions."""
     if isinstance(q, Fraction) and isinstance(square, Fraction):
         return _sign(1 - q * square)
-    q, square = (x if isinstance(x, arb) else exact(x) for x in (q, square))
-    return sign(1 - q * square)
+    return sign(1 - _ball(q) * _ball(square))
 
 
 def amplitude_rows(
@@ -252,7 +256,7 @@ def amplitude_rows(
 def constants_record(
     given: GivenModulus, digits: int | None, *, n: Fraction | None = None, units: Units = DEGREES
 ) -> dict[str, Any]:
-    """Return the constants of a modulus, correctly rounded to doubles or to `digits` digits.
+    """Return `CONSTANTS` of a modulus, correctly rounded to doubles or to `digits` digits.
 
     With n, Pi(n | k) is one of them.  Unless k is in [0, 1], numbers are split into `_re` and
     `_im`.  Infinite constants are None.  Raises LagtopError for a modulus out of range.
