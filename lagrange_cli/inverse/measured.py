@@ -179,7 +179,8 @@ def measured(recording: Recording, sigma: Mapping[str, float] | float | None = N
     `sigma` are standard deviations in the unit of angles of the recording: one for all channels, or
     by channel.  Raises LagtopError, DataError for a bad recording.
     """
-    seen, where = recording.observed(), shown_path(recording.source.file or "") or "the recording"
+    seen, file = recording.observed(), recording.source.file
+    where = "the recording" if file is None else shown_path(file)
     t = recording.given["t"][:, 0]
     try:
         kind, found = _angles(seen, recording)

@@ -210,6 +210,15 @@ def test_windows_keep_the_time_and_have_rows_of_every_angle() -> None:
         recording_from(t, theta=np.ones(60), psi=np.where(t < 102, t, np.nan)).windows(3)
 
 
+def test_arrays_that_are_no_recording_are_refused_by_name() -> None:
+    """Arrays come from no file: angles in degrees, and an axis without direction."""
+    t = np.linspace(0, 1, 50)
+    with pytest.raises(LagtopError, match=r"^the recording: theta must be between 0 and 180 deg"):
+        fit(t, theta=np.full(50, 100.0), psi=t)
+    with pytest.raises(LagtopError, match=r"^the recording: it must have 12 rows or more"):
+        fit(t, axis=np.zeros((50, 3)))
+
+
 @pytest.mark.parametrize(
     "scale", [1e-9, *(pytest.param(x, marks=pytest.mark.slow) for x in (1e7, 1e3))]
 )
