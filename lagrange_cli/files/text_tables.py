@@ -42,6 +42,7 @@ _AT_ONCE = 1 << 20
 _SWAPPED = str.maketrans(",.", ".,")
 _DIGITS = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?"  # D as Fortran writes it
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(?:nan|inf)", re.IGNORECASE | re.ASCII)
+_WITH_UNIT = re.compile(rf"{_DIGITS}(?:\s+[^\W\d_].*|\s*°)")
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
@@ -226,9 +227,11 @@ class Table:
             plain = self.plain(cell)
             return parse_number(plain.translate(EXPONENT) if _NUMBER.fullmatch(plain) else plain)
         except LagtopError:
-            if not is_other and self.decimal != ",":
+            has_unit = _WITH_UNIT.fullmatch(cell)
+            if not is_other and not has_unit and self.decimal != ",":
                 raise
         hint = f" (use {arg('decimal', other)})" if is_other else ""
+        hint = " (write the unit in the heading, as NAME [UNIT])" if has_unit else hint
         raise LagtopError(f"must be a finite decimal number, got {quoted(cell)}{hint}")
 
     def plain(self, cell: Any) -> str:

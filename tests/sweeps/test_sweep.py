@@ -168,6 +168,9 @@ def test_dicts(tmp_path: Path, lagtop: Lagtop) -> None:
     assert mixed.stderr.endswith(
         "r0 must be a finite decimal number, got '2.5' (use --decimal point)\n"
     )
+    file.write_text("r0,theta0_deg\n400 rpm,30\n")
+    hint = "got '400 rpm' (write the unit in the heading, as NAME [UNIT])\n"
+    assert lagtop("sweep", file, "--keys", "r0").stderr.endswith(hint)
     file.write_bytes(
         b"\xef\xbb\xbfname,r0,theta0_deg,T_nutation\r\n"
         b'"a, ""b""",50,30,9\r\n\r\n=x,5_0,30,9\r\nc,7\r\n'
