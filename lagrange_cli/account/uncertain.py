@@ -28,7 +28,7 @@ def spread_of(found: Given, motion: Motion) -> Spread:
     """
     spread = Spread(motion, found.stds)
     for name, std in found.stds.items():
-        if std and not spread.beside(name, 1):
+        if std and not spread.neighbours(name, 1):
             raise LagtopError(f"{name} has no possible value {std:g} away: change it", name)
     return spread
 
@@ -97,8 +97,8 @@ class BudgetLine(NamedTuple):
 def budget(found: Given, motion: Motion, key: str, units: Units) -> tuple[Report, bool]:
     """Return the budget of a key, and whether it changes in proportion to the inputs.
 
-    The last row is the key itself.  Raises AbsentError if the motion, or one beside it, has no such
-    key.
+    The last row is the key itself.  Raises AbsentError if the motion, or a neighbouring one, has no
+    such key.
     """
     check_names("budget", [key], units.keys(NUMBERS))
     value = motion.record(radians=units.radians, keys=[key])[key]

@@ -30,7 +30,7 @@ def with_stds(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return a record with the keys KEY_std, and the values as `value(uncertainty)` for people.
 
-    They are the spread of motions beside the motion or, with `samples`, of random tops.  A warning
+    They are the spread of neighbouring motions or, with `samples`, of random tops.  A warning
     names the numbers that have none, and those with a doubtful one.
     """
     drawn = _of_random_tops(found, motion, [*record], samples) if samples else None

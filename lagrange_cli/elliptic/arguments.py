@@ -68,7 +68,7 @@ class Arguments(NamedTuple):
 
         Multiples of K and K' are always exact.
         """
-        wanted = (digits, digits, *[digits or 17] * 4)
+        wanted = (digits, digits, *[digits or 17] * 4)  # 17 only rounds ranges of equal ratios
         parts = (
             repeat(Fraction(0)) if x is None else places(x, n)
             for x, n in zip(self, wanted, strict=True)

@@ -163,8 +163,8 @@ def headings(columns: Iterable[str], units: Units) -> list[str]:
 def column_constants(of: Numbers) -> dict[str, arb]:
     """Return the constants in the formulas of columns, in balls.
 
-    `drift` is r0 - b, `plus` and `minus` are (beta + b)/2 and (beta - b)/2.  On the vertical all of
-    the rotation counts as spin.
+    `drift` is r0 - b, `torque` is mgs, `plus` and `minus` are (beta + b)/2 and (beta - b)/2.
+    On the vertical all of the rotation counts as spin.
     """
     facts, r0 = of.facts, of["r0"] if of.facts.spin else arb(0)
     names = ("A", "C", "a", "energy_constant")

@@ -253,7 +253,7 @@ class Numbers(dict[str, Any]):
 
     @property
     def momentum(self) -> arb:
-        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
+        """psi' sin^2(theta0) = beta - b u0 (4,7)."""
         return self["psidot0"] * square(self["theta0"][0])
 
     @property

@@ -1,4 +1,4 @@
-"""The spread of motions beside a motion, against the reference and random tops; derivatives.
+"""The spread of neighbouring motions, against the reference and random tops; derivatives.
 
 `test_frozen` compares the derivatives of fifteen records.
 """
@@ -29,20 +29,20 @@ SCENES: dict[str, dict[str, float]] = {
 QUICK = [pytest.param(x, marks=() if x == "any start" else pytest.mark.slow) for x in SCENES]
 
 
-def beside(top: Top, name: str, std: float) -> list[dict[str, Any]]:
+def neighbours(top: Top, name: str, std: float) -> list[dict[str, Any]]:
     """Return the inputs of the tops a standard deviation away, the larger input first."""
     value = Fraction(getattr(top, name))
     return [top.replace(**{name: value + side * Fraction(std)}).as_dict() for side in (1, -1)]
 
 
 @pytest.mark.parametrize("scene", QUICK)
-def test_a_contribution_is_half_the_difference_of_the_motions_beside(scene: str) -> None:
+def test_a_contribution_is_half_the_difference_of_neighbouring_motions(scene: str) -> None:
     top, keys = Top(**SCENES[scene]), ["T_nutation", "theta_max_deg", "mean_spin_rate", "K", "Lz"]
     for name in ("C", "psidot0"):
         std = 1e-12 * float(getattr(top, name))
         spread = Spread(solve(top), {name: std})
         with mpmath.workdps(80):
-            more, less = (reference_record(x, root_digits=400) for x in beside(top, name, std))
+            more, less = (reference_record(x, root_digits=400) for x in neighbours(top, name, std))
             for key in keys:
                 found, half = spread.number(key), float((more[key] - less[key]) / 2)
                 assert found is not None
@@ -57,7 +57,8 @@ def test_columns_are_spread_as_those_of_the_reference(scene: str) -> None:
     found = ColumnSpread(Spread(motion, {name: std}), ["theta", "phi", "psi"])(times)
     for t, row in zip(times.tolist(), found.T, strict=True):
         more, less = (
-            reference_state(x, t, digits=40, root_digits=300)[:3] for x in beside(top, name, std)
+            reference_state(x, t, digits=40, root_digits=300)[:3]
+            for x in neighbours(top, name, std)
         )
         half = [abs(float(x - y)) / 2 for x, y in zip(more, less, strict=True)]
         size = 1 + abs(t) * abs(motion.mean_spin_rate)
