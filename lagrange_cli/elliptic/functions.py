@@ -32,7 +32,7 @@ _LETTERS = {Kind.IMAGINARY: "scnd", Kind.LARGE: "sdcn"}
 
 
 class Point(NamedTuple):
-    """A complex number plus multiples of K and K' of the reduced modulus, over its stretch.
+    """A complex number plus multiples of K/stretch and K'/stretch of the reduced modulus.
 
     Parts are `fmpq`.  The first may be a ball.
     """

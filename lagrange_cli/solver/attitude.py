@@ -74,7 +74,7 @@ class Nutation:
     def __init__(self, facts: Facts, of: Names) -> None:
         self.spin, self.precession = of["mean_spin_rate"], of["mean_precession_rate"]
         self.period = self.unit = of["T_nutation"]
-        self.falls = _falls(facts)
+        self.direction = _start_direction(facts)
         self.since = _since_u1(facts, of)
         """Periods from a passage of u1 to t = 0."""
         self.ratio: arb | None = None if of["m_k"].is_zero() else of["K_prime"] / of["K"]
@@ -120,7 +120,7 @@ class Nutation:
         for pole, side, value in zip((1, -1), self.sides, values, strict=True):
             if side.place.is_zero():  # it only turns at the passages
                 own = (n % 2 == 0) == (pole > 0)
-                turns = arb(0 if own else side.sign * (sign(rest) or -pole * self.falls)) / 2
+                turns = arb(0 if own else side.sign * (sign(rest) or -pole * self.direction)) / 2
             else:
                 turns = arb.atan2(value.imag, value.real) / arb.pi()
             found.append((turns - side.sign * rest) * arb.pi())
@@ -176,7 +176,7 @@ class SingleSwing:
     """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t."""
 
     def __init__(self, facts: Facts, of: Names) -> None:
-        u0, u2, self.falls = of["u0"], of["u2"], _falls(facts)
+        u0, u2, self.direction = of["u0"], of["u2"], _start_direction(facts)
         self.precession = of["b"] / 2
         self.spin = of["r0"] - self.precession
         self.x = arb(0) if facts.over_bottom else root((1 + u2) / 2)
@@ -184,8 +184,10 @@ class SingleSwing:
         self.y = root((1 - u2) / 2) * (-1 if facts.spin < 0 else 1)
         """sin(theta_max/2), with the sign of b."""
         self.rate = root(of["wide"]) / 2
-        self.h0 = -self.falls * root((u0 - u2) / (1 - u0)).asinh() if not facts.turning else arb(0)
+        self.h0 = arb(0)
         """h at t = 0, exactly 0 if the axis is lowest then."""
+        if not facts.turning:
+            self.h0 = -self.direction * root((u0 - u2) / (1 - u0)).asinh()
         self.unit = _time_of_a_radian(self.spin, self.precession, self.rate)
         self.start = self.turn(self.h0), arb(0)
 
@@ -198,7 +200,7 @@ class SingleSwing:
 
     def turn(self, h: arb) -> arb:
         """Return arg X without its mean growth; on the lower pole, the limit at t = 0."""
-        side = arb(-self.falls) if h.is_zero() and self.x.is_zero() else h.tanh()
+        side = arb(-self.direction) if h.is_zero() and self.x.is_zero() else h.tanh()
         return arb.atan2(self.y * side, self.x)
 
 
@@ -213,7 +215,7 @@ def course_of(facts: Facts, of: Names) -> Course:
     return SingleSwing(facts, of) if facts.separatrix else Nutation(facts, of)
 
 
-def _falls(facts: Facts) -> int:
+def _start_direction(facts: Facts) -> int:
     """Return -1 if the nutation rate is negative at the start, else 1."""
     return -1 if facts.inputs["thetadot0"] < 0 else 1
 
@@ -262,4 +264,4 @@ def _since_u1(facts: Facts, of: Names) -> arb:
     sine2, cosine2 = (of["u1"] - u0) * of["wide"], (u0 - of["u2"]) * of["narrow"]
     amplitude = arb.atan2(root(sine2), root(cosine2))
     periods: arb = acb.elliptic_f(acb(amplitude), acb(of["m_k"])).real / (2 * of["K"])
-    return _falls(facts) * periods
+    return _start_direction(facts) * periods
