@@ -1,7 +1,7 @@
 """Numbers that others have printed, checked: a table of tests/README.md is made from here.
 
 The exact values are those of `lagtop` in many digits; a test compares them with those of
-`record_reference`, which shares no formula with it.
+`record_reference`, which shares only Viete's cosines for the roots with it.
 """
 
 from __future__ import annotations

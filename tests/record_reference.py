@@ -1,9 +1,10 @@
-"""The numbers of a motion in mpmath, by formulas that the solver does not use.
+"""The numbers of a motion in mpmath, by formulas the solver does not use but for the roots.
 
-Roots by Viete's cosines in 2,000 digits or more.  Two that agree to 30 % of them are equal, so no
-sign of a polynomial is needed.  Carlson's integrals for K, E, F and Pi, the phase of the start
-counted from the lowest point (the solver uses the arithmetic-geometric mean, Bartky's
-transformation, and theta functions counted from the highest point).
+Roots by Viete's cosines in 2,000 digits or more, as in the solver: `test_explanation` inserts them
+into the cubic.  Two that agree to 30 % of the digits are equal, so no sign of a polynomial is
+needed.  Carlson's integrals for K, E, F and Pi, the phase of the start counted from the lowest
+point (the solver uses the arithmetic-geometric mean, Bartky's transformation, and theta functions
+counted from the highest point).
 """
 
 from __future__ import annotations

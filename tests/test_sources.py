@@ -48,7 +48,7 @@ def test_an_equation_without_a_place_is_refused(name: str) -> None:
         Register(__name__).enter(f"{name} | 1 = 1")
 
 
-# Published numbers: the exact values beside them, by a reference that shares no formula
+# Published numbers: the exact values beside them, by a reference with other formulas
 
 
 def name(x: Printed) -> str:

@@ -1,8 +1,8 @@
 """The definition of error, and the exact attitude in 50 digits of mpmath.
 
-The reference shares no formula with lagtop, which uses theta functions counted from the highest
-point and the arithmetic-geometric mean.  It uses the roots by Viete's cosines, mpmath's sn, cn and
-dn counted from the lowest point, and Legendre's third integral by Carlson's R_F and R_J:
+The reference shares only Viete's cosines for the roots with lagtop, which uses theta functions
+counted from the highest point and the arithmetic-geometric mean.  It uses mpmath's sn, cn and dn
+counted from the lowest point, and Legendre's third integral by Carlson's R_F and R_J:
 
     u = u2 + (u1 - u2) sn^2 w,  w = sqrt(a (u3 - u2)) (t - t2)/2,
     (psi +- phi)/2 = +-(r0 - b) t/2 + (beta +- b)/2 * integral of dt / (1 +- u).

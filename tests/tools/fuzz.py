@@ -3,12 +3,12 @@
     python tests/tools/fuzz.py --scenes 20000 --seed 1
     python tests/tools/fuzz.py --scenes 2000 --kinds 'over a pole,double cusp' --sweep --times 10
 
-Every number of `solve` must be the double nearest to that of `record_reference`, which shares no
-formula with lagtop, or exist in neither.  A third of the scenes are checked as decimals of twenty
-to sixty digits, or of up to 400 with --long, and printed in 5 to 40.  Some give phidot0 in place of
-r0, and A_cm in place of A.  With --times N, the attitude of tops that nutate is checked at N times,
-next to halves and quarters of a period up to 1e14 periods away.  With --sweep, every number of a
-sweep must be within 10 eps.
+Every number of `solve` must be the double nearest to that of `record_reference`, whose formulas
+differ except for the roots, or exist in neither.  A third of the scenes are checked as decimals of
+twenty to sixty digits, or of up to 400 with --long, and printed in 5 to 40.  Some give phidot0 in
+place of r0, and A_cm in place of A.  With --times N, the attitude of tops that nutate is checked at
+N times, next to halves and quarters of a period up to 1e14 periods away.  With --sweep, every
+number of a sweep must be within 10 eps.
 
 What exceeds the bounds is listed with a command that shows it, and the exit code is 1.  A run that
 is stopped lists what it has found.  About five scenes a second and core, with --sweep one.
