@@ -41,8 +41,6 @@ _CALMER = 0.1
 """Logarithm of the noise by which a part or windows must be calmer."""
 _OUTLYING = 30.0
 """The same without outliers, over their share of the rows."""
-_NOISY = 2.0
-"""Residuals over the differences of neighbours from which other meanings of angles are tried."""
 _AS_NOISY = 0.1
 """Logarithm of the usual residual, per channel, that another reading may have more."""
 _SURE_GAP = 12.0
@@ -133,9 +131,6 @@ class Advice:
         A reading of an axis is worth a fit if harmonics leave no more noise.
         """
         recording, is_angles = self.recording, self.recording.kind == "angles"
-        rests = self.outcome.residuals.values()
-        if is_angles and all(x.rms <= _NOISY * max(x.neighbours, x.step) for x in rests):
-            return
         calm = calmness(recording.thinned(_ROWS)) + _AS_CALM
         for row in misreadings(recording.source):
             other = None

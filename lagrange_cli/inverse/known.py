@@ -36,7 +36,7 @@ The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
 WEIGHT = {"m", "g", "s"}
 CONTRADICTS = 3.0
 """Standard deviations from which a known input contradicts the recording."""
-_UNITS = (6.0, 2 * math.pi, 30 / math.pi, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7)
+_UNITS = (6.0, 2 * math.pi, 30 / math.pi, 10.0, 180 / math.pi, 60.0, 100.0, 1e3, 1e4, 1e6, 1e7)
 _ROUGHLY = 0.02
 """Factors between units, in either direction, and how close a contradiction is to them."""
 _OPPOSITE = "of the opposite sign"

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import recordings
 from engines import Array
 from lagtop import fit, solve
 from noisy_recordings import (
@@ -41,6 +42,16 @@ def test_exchanged_spin_and_precession_are_noticed() -> None:
     sigma = {"theta": DEGREE, "phi": 3 * DEGREE, "psi": 0.1 * DEGREE}  # by the names of the paper
     outcome = fitted(t, seen | {"phi": seen["psi"], "psi": seen["phi"]}, sigma=sigma)
     assert outcome.verdict == "failed"
+    assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
+
+
+@pytest.mark.slow
+def test_exchanged_angles_that_fit_nearly_as_well_are_noticed() -> None:
+    """Residuals are 1.2 times the noise, and a wrong scale of psi of -21 % would explain them."""
+    path = recordings.SAMPLES / "tutorials" / "wheel.csv"
+    t, theta, psi, phi = np.genfromtxt(path, delimiter=",", skip_header=3).T
+    angles = {"theta": np.radians(theta), "phi": np.radians(psi), "psi": np.radians(phi)}
+    outcome = fit(t, **angles, known={"m": 2.04, "s": 0.152, "g": 9.81})
     assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
 
 

@@ -137,6 +137,7 @@ def test_a_known_input_that_contradicts_the_recording_is_named(c: str, r0: str) 
         ({"C": 2.5e-3, "r0": 52.36, "psidot0": 1.0}, "omit psidot0"),
         ({"theta0_deg": 0.0}, "omit theta0"),
         ({"C": 2.5e-6, "r0": 52.36}, "about 1/1000 of it: check the units, or omit C"),
+        ({"C": 2.5e-4, "r0": 52.36}, "about 1/10 of it: check the units, or omit C"),
     ],
 )
 def test_a_contradiction_says_which_unit_or_moment_it_is(
