@@ -67,9 +67,9 @@ class Functions:
         self.is_0, self.is_1 = k.is_zero(), k_prime.is_zero()
         half_turn = self.stretch / arb.pi()
         self.scale: Any = half_turn * (arb(0) if self.is_1 else k_prime.agm(1))
-        """Periods 2K of the reduced modulus in a unit of the argument."""
+        """stretch/2K of the reduced modulus: periods in a unit of the argument."""
         self.across: Any = half_turn * (arb(0) if self.is_0 else k.agm(1))
-        """Periods 2K' in a unit of the argument."""
+        """stretch/2K' of the reduced modulus."""
         if rates:
             self.scale, self.across = rates
         self.rate, self.tau, self.exponent = acb(self.scale), None, acb(0)

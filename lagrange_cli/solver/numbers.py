@@ -230,7 +230,7 @@ class Numbers(dict[str, Any]):
     def pole_integral(self, pole: int) -> arb:
         """Return Q (pole = 1) or P (pole = -1): K times the mean of (beta + b pole)/(1 + u pole).
 
-        The mean over a period replaces the integral (3,8).
+        The mean is that of `mean_of_inverse`, in place of the integral (3,8).
         If the axis passes over the pole where 1 + u pole = 0, psi + pole phi grows by a whole turn
         per period there.  On the vertical all of the rotation counts as spin.
         """
