@@ -83,12 +83,7 @@ def plot_command(
     """Draw pictures of motions.
 
     \b
-    sphere  the path of the figure axis on the unit sphere, coloured by time
-    angles  tilt, precession, and the periodic part of the spin
-    cubic   f(u), its roots, and the band of the motion
-    phase   nutation rate against tilt, and the separatrix
-    map     a key of the record over two inputs
-    all     sphere, angles, cubic and phase on one sheet (default)
+    {kinds}
 
     Several scenes share one picture, at one scale.
     """
@@ -156,6 +151,16 @@ def plot_command(
                 picture = figure_bytes(figure, fmt, float(dpi or PAGE_DPI), about, text)
             stack.enter_context(opened(output)).write(picture)
     warn_if_nonlinear(stds)
+
+
+def _kinds() -> str:
+    """Return the lines of the help on the kinds of picture."""
+    *others, last = SHEET["all"]
+    kinds = KINDS | {"all": f"{', '.join(others)} and {last} on one sheet (default)"}
+    return "\n    ".join(f"{kind:8}{meaning}" for kind, meaning in kinds.items())
+
+
+plot_command.help = str(plot_command.help).format(kinds=_kinds())
 
 
 def _caption(text: str | None, scenes: int) -> list[str]:

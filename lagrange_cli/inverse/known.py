@@ -81,7 +81,8 @@ def known_inputs(found: Given) -> Known:
 
 def in_all_forms(values: Mapping[str, Any]) -> Quantities:
     """Return quantities of a motion that has inputs in any form; the tilt is in radians."""
-    found = Quantities(values, pi=lambda: math.pi, u0=lambda: np.cos(found[TILT]))
+    constants: Any = {"pi": lambda: math.pi, "sqrt": lambda: np.sqrt}
+    found = Quantities(values, u0=lambda: np.cos(found[TILT]), **constants)
     return found
 
 

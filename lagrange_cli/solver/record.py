@@ -216,9 +216,14 @@ def remark_words(facts: Any) -> Iterator[tuple[str, Any]]:
     yield _FAST_WORDS, facts.fast
 
 
+def remark_without_numbers(facts: Facts) -> str | None:
+    """Return the remark of one motion as a sweep has it."""
+    return next((words for words, holds in remark_words(facts) if holds), None)
+
+
 def remark_of(motion: Solution, units: Units = DEGREES) -> str | None:
     """Return a line on special properties of a motion."""
-    words = next((words for words, holds in remark_words(motion.facts) if holds), None)
+    words = remark_without_numbers(motion.facts)
     return _fast_remark(motion, units.angle) if words == _FAST_WORDS else words
 
 

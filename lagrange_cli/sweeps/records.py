@@ -21,7 +21,7 @@ from ..names import check_names
 from ..solver import keys as motion_record
 from ..solver.facts import Regime
 from ..solver.keys import LINES
-from ..solver.record import path_words, record_in_range, remark_words
+from ..solver.record import path_words, record_in_range, remark_without_numbers, remark_words
 from ..solver.solve import solve
 from ..top.units import DEGREES, Units, bare_name
 from .numbers import GOOD, ArrayNumbers
@@ -185,8 +185,8 @@ def _solve(
             errors[row] = "; ".join(map(str, beyond))
         for key in INPUTS & columns.keys():  # some are known only to `solve`
             record[key] = getattr(motion.top, key)
-        if record.get("remark"):
-            record["remark"] = record["remark"].partition(":")[0]
+        if "remark" in record:
+            record["remark"] = remark_without_numbers(motion.facts)
         for key, value in record.items():
             if value is not None and key in columns:
                 columns[key][row] = value

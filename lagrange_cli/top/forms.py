@@ -2,11 +2,12 @@
 
 The formulas are those of the table in `inputs`.  They hold for fractions, balls, numbers of mpmath,
 doubles, arrays and pairs of doubles.  Their names are keys of inputs, `pi`, and `u0` for the cosine
-of the tilt.
+of the tilt; an inverse may use `sqrt`, too.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
@@ -62,4 +63,5 @@ def needed_by(key: str) -> tuple[str, ...]:
 def equation_of(key: str) -> str:
     """Return the formula of a form, such as A = A_cm + m s^2."""
     form = FORMS[key]
-    return f"{form.gives} = {form.formula.replace('s*s', 's^2').replace('*', ' ')}"
+    formula = re.sub(r"\b(\w+)\*\1\b", r"\1^2", form.formula)
+    return f"{form.gives} = {formula.replace('*', ' ')}"

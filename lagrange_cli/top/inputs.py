@@ -33,7 +33,7 @@ class Input(NamedTuple):
     default: float | None
     """The value in the worked example, in CGS; None for an alternative to another input."""
     gives: str = ""
-    """The input that this form gives: `A`, or another form that gives one; empty for an input."""
+    """The input that this form gives: `A` or `r0`, or another form of one; empty for an input."""
     formula: str = ""
     """Its value from this form and others."""
     inverse: str = ""

@@ -19,6 +19,7 @@ from lagrange_cli.bench.hard_scenes import CORNERS, KINDS, in_doubles, nutating
 from lagrange_cli.solver import keys as table
 from lagrange_cli.solver.facts import Regime
 from lagrange_cli.solver.keys import INPUT_KEYS, NUMBERS, TEXT_KEYS
+from lagrange_cli.solver.record import remark_without_numbers
 from lagrange_cli.sweeps import records
 from lagrange_cli.sweeps.numbers import ArrayNumbers
 from lagrange_cli.sweeps.tops import top_arrays
@@ -44,7 +45,7 @@ def assert_trusted(scenes: list[Scene], least: int, **word: str) -> None:
     assert len(fine) >= least
     for i in fine:
         scene, motion = scenes[i], solve(Top(**scenes[i]))
-        remark = motion.remark and motion.remark.partition(":")[0]
+        remark = remark_without_numbers(motion.facts)
         assert [found[key][i] for key in TEXT_KEYS] == [motion.regime, motion.path, remark], scene
         for key in KEYS:
             value, bound = float(found[key][i]), float(found[f"{key}_radius"][i])

@@ -31,7 +31,8 @@ MEASURED = [key for key in FORMS if key in DECLARED]
 def in_form(top: Top, key: str) -> dict[str, Any]:
     """Return the inputs of a top, one of them in another form, in doubles."""
     numbers = {name: float(x) for name, x in top.inputs(radians=True).items()}
-    known = Quantities(numbers, pi=lambda: math.pi, u0=lambda: math.cos(numbers["theta0_rad"]))
+    constants: Any = {"pi": lambda: math.pi, "sqrt": lambda: math.sqrt}
+    known = Quantities(numbers, u0=lambda: math.cos(numbers["theta0_rad"]), **constants)
     return {x: y for x, y in top.given.items() if x != replaced_by(key)} | {key: known[key]}
 
 
@@ -116,13 +117,15 @@ def test_a_form_is_a_known_input_of_a_steady_fit(key: str) -> None:
 ROW = """spin_frequency | f_φ0 | spin frequency at the start
     | turns of the spin per unit of time at the start | instead of phidot0 | 1/time |
     | phidot0 | 2*pi*spin_frequency | phidot0/(2*pi)
+gyradius | k_A | equatorial radius of gyration
+    | radius of gyration about the pivot | positive | len | | A | m*gyradius*gyradius | sqrt(A/m)
 """
-FIELD = "    spin_frequency: Real | None = None\n"
+FIELD = "    spin_frequency: Real | None = None\n    gyradius: Real | None = None\n"
 
 
 @pytest.mark.slow
 def test_a_further_form_is_one_row_and_one_field(tmp_path: Path) -> None:
-    """The tests of all forms pass in a copy of the package with one more."""
+    """The tests of all forms pass in a copy of the package with two more."""
     package = shutil.copytree(ROOT / "lagrange_cli", tmp_path / "lagrange_cli")
     (tmp_path / "sample_inputs").mkdir()
     for name, place, more in (("inputs", "theta0 |", ROW), ("top", "    _given: dict", FIELD)):
@@ -130,14 +133,14 @@ def test_a_further_form_is_one_row_and_one_field(tmp_path: Path) -> None:
         file.write_text(text.replace(place, more + place, 1), encoding="utf-8")
     line = ["pytest", "-q", "-p", "no:cacheprovider", f"--rootdir={ROOT / 'tests'}", __file__]
     ran = subprocess.run(
-        [sys.executable, "-m", *line, "-k", "spin_frequency or every_form"],
+        [sys.executable, "-m", *line, "-k", "spin_frequency or gyradius or every_form"],
         cwd=tmp_path,
         env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert "6 passed" in ran.stdout, ran.stdout
+    assert "9 passed" in ran.stdout, ran.stdout
 
 
 def test_a_period_is_exact_to_the_digits(lagtop: Lagtop) -> None:
