@@ -15,7 +15,7 @@ from ..sweeps.records import sweep
 from ..top.inputs import all_replaced
 from ..top.units import Units
 from .conditions import Comparison, Vector
-from .known import CONTRADICTS, Known, body_numbers, in_all_forms, time_power
+from .known import CONTRADICTS, WEIGHT, Known, body_numbers, in_all_forms, time_power
 from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
 from .reasons import Kind, Reason
@@ -94,7 +94,7 @@ def nutating_outcome(
     if recording.angles.keys() == {"theta"} and vector.known.get("psidot0") == (0, 0):
         notes.append("the sign of b is not determined: theta alone does not show the direction")
     values = {x: y[0] for x, y in pairs.items()}
-    inputs, arbitrary = _inputs(vector, values, is_spin_known=is_spin_known)
+    inputs, arbitrary = _inputs(found, values, is_spin_known=is_spin_known)
     arbitrary |= hidden & {"thetadot0", "psidot0"} - vector.known.keys()
     return Outcome(
         recording=recording,
@@ -202,12 +202,14 @@ def _meaning(name: str, known: Known, pairs: Mapping[str, tuple[float, ...]]) ->
 
 
 def _inputs(
-    vector: Vector, numbers: Mapping[str, float], *, is_spin_known: bool
+    compared: Comparison, numbers: Mapping[str, float], *, is_spin_known: bool
 ) -> tuple[dict[str, float], set[str]]:
     """Return inputs of `Top` with this motion, and which of the body's are arbitrary.
 
-    Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.
+    Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.  If known
+    inputs contradict the motion, its a and b determine A and C.
     """
+    vector = compared.vector
     v = {name: float(x[0]) for name, x in vector.motion(vector.z[np.newaxis]).items()}
     given = {name: float(x[0]) for name, x in vector.inputs(vector.z[np.newaxis]).items()}
     body, whole = ("m", "s", "g", "A", "C", "r0"), in_all_forms(given)
@@ -216,9 +218,13 @@ def _inputs(
     has |= {x: numbers[x] for x in body if x in numbers and (x != "r0" or is_spin_known)}
     is_spin_seen = vector.best.problem.spins or "r0" in all_replaced(given)
     has |= {"r0": v["r0"]} if is_spin_seen and is_spin_known else {}
+    if compared.contradictions and has.keys() >= WEIGHT:
+        has["A"] = 2 * has["m"] * has["g"] * has["s"] / v["a"]
     arbitrary = {*body} - has.keys()
     moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
     ratio = v["b"] / v["r0"] if "r0" in has else 1.0
+    if compared.contradictions and has.keys() >= {"C", "r0"}:
+        has["C"] = ratio * moment
     has["r0"] = v["b"] * moment / has.setdefault("C", ratio * moment)
     weight = v["a"] / 2 * moment  # mgs
     share = min(0.1, max(1 - has["C"] / (2 * moment), 1e-3) / 2)

@@ -196,3 +196,19 @@ def test_known_inputs_that_agree_and_a_nutation_of_a_steady_precession() -> None
     assert [x.split(",")[0] for x in wrong.failures()] == [
         "known psidot0 = steady contradicts the recording",
     ]
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"A": 1.3 * 4.45e-3}, {"A": 4.45e-3, "m": 0.4}, {"A": 4.45e-3, "C": 3e-3}]
+)
+def test_a_wrong_body_is_named_and_no_machine(wrong: dict[str, float]) -> None:
+    """What a machine would change is computed for the motion, not for the wrong body."""
+    top = Top(**LAB, A=4.45e-3, C=2.5e-3, r0=52, theta0_deg=30, psidot0=2)
+    t, seen = recorded("theta", "phi", "psi", top=top, seed=1)
+    outcome = fitted(t, seen, known=LAB | wrong)
+    name = "C" if "C" in wrong else "A"
+    assert [x[:9] for x in outcome.failures()] == [f"known {name} ="]
+    assert outcome.inputs is not None
+    found, exact = solve(Top(**outcome.inputs)), solve(top)
+    assert (found.a, found.b) == pytest.approx((exact.a, exact.b), rel=0.02)
+    assert outcome.inputs["r0"] == pytest.approx(52, rel=0.01)
