@@ -167,7 +167,11 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
     carried = [x for x in columns if x not in units and x not in computed]
     inputs = {_plain(known): known for known in reversed(INPUTS) if known not in units}
     if not any(x.startswith(TILT) for x in units):
-        inputs |= dict.fromkeys(("theta", "tilt", "elevation"), "theta0_deg")
+        inputs |= dict.fromkeys(("theta", "tilt"), "theta0_deg")
+        inputs["elevation"] = "theta0_deg, the tilt from the upward vertical"
+    if not units.keys() & {"r0", "phidot0", "spin_period"}:
+        inputs |= dict.fromkeys(("spin", "spinrate", "omega"), "r0 (total rate) or phidot0")
+    inputs |= {"mass": "m"} if "m" not in units else {}
     for column in carried:
         if known := inputs.get(_plain(column)):
             raise DataError(f"{name}: the column {column} must be spelt {known}")
