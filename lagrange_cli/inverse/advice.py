@@ -21,7 +21,7 @@ from .known import Known
 from .measured import LEAST_ROWS, Measured, measured
 from .neighbours import DECAY
 from .outcome import GOOD, STEADY, Outcome
-from .reasons import NEEDS_ADVICE, Kind, Reason
+from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
 from .rows import calmness, evenly_timed, likely_gap, release, with_gap
 from .search import best_fit
 
@@ -83,8 +83,8 @@ class Advice:
 
     def reasons(self) -> Iterator[Reason]:
         """Yield advice, the best first."""
-        if self.kinds & {Kind.PIVOT, Kind.ROWS} or not self.kinds & NEEDS_ADVICE:
-            return  # they say what to do
+        if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
+            return
         if DECAY in self.outcome.shown or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         for texts in (self._times, self._meanings, self._frames, self._aliased, self._parts):

@@ -41,6 +41,8 @@ class Kind(IntEnum):
 
 NEEDS_ADVICE = {Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
 """Kinds that a mistake in the recording may cause."""
+SAY_WHAT_TO_DO = {Kind.PIVOT, Kind.ROWS}
+"""Kinds with a remedy of their own, beside which no other advice is sought."""
 MISFITS = {Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS, Kind.SIGMA}
 """Kinds of a motion that does not match the recording."""
 ADVICE = {Kind.READING, Kind.WINDOWS, Kind.CHECK}

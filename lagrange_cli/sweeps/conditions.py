@@ -45,7 +45,8 @@ def read_condition(text: str, units: Units) -> Condition:
 
     Raises LagtopError.
     """
-    match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
+    relations = "|".join(sorted(_RELATIONS, key=len, reverse=True))
+    match = re.fullmatch(rf"\s*(\w+)\s*({relations})\s*(.+?)\s*", text)
     if not match:
         raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
     name, relation, word = match.groups()

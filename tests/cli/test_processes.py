@@ -118,6 +118,7 @@ def shell(line: str, **extra: str) -> subprocess.CompletedProcess[bytes]:
 )
 def test_streams_of_every_command(name: str) -> None:
     """Each stream is closed or full, or its reader leaves."""
+    assert LINES.keys() == {"", *COMMANDS}
     line = LINES[name]
     whole = shell(f"$LAGTOP {line}")
     assert whole.returncode == 0, whole.stderr
