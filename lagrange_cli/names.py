@@ -11,6 +11,8 @@ from .errors import LagtopError
 
 ANGLES = ("theta", "phi", "psi")
 """Tilt, spin and precession, in the order used everywhere."""
+RADIUS = "_radius"
+"""The end of the name of a bound, which follows the key of its number."""
 _MOST_CHARACTERS, _FIRST = 240, 12
 """The most characters of a list in a message, and the number of names shown of a longer list."""
 

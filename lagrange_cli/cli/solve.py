@@ -9,7 +9,7 @@ from typing import Any
 from ..account.summary import summary
 from ..arithmetic.text import value_text
 from ..errors import AbsentError, LagtopError, joined
-from ..names import Key, check_names
+from ..names import RADIUS, Key, check_names
 from ..output.destination import Output
 from ..output.document import Document, Lines, record_document
 from ..solver.facts import Regime
@@ -144,7 +144,7 @@ def _write_selected(
             raise LagtopError(f"{text} has no uncertainty: leave {key} out of --get")
     reasons = [f"{key} is {_absence(motion, record, key)}" for key in keys if record[key] is None]
     if len(reasons) < len(keys):
-        record = {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
+        record = {x: record[x] for key in keys for x in (key, f"{key}{RADIUS}") if x in record}
         texts = record | shown if out.is_named else record
         values = Lines([value_text(texts[key]) for key in record])
         out.document(Document([*record], [record], lambda _: [values], record))

@@ -9,7 +9,7 @@ from textwrap import fill
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import NumberText, shortened, value_text
-from ..names import Key
+from ..names import RADIUS, Key
 from .terminal import printable
 from .text import json_text
 
@@ -95,7 +95,7 @@ def record_page(record: Mapping[str, Any], declared: Callable[[], Keys], width: 
     If there are radii, they replace the equations.
     """
     keys = declared()
-    last = "Radius" if any(f"{name}_radius" in record for name in keys) else "Equation"
+    last = "Radius" if any(f"{name}{RADIUS}" in record for name in keys) else "Equation"
     headings = ["Key", "Symbol", "Name", "Value", "Unit", last]
     if (width or 0) < WIDE:
         headings.remove("Name")
@@ -107,7 +107,7 @@ def record_page(record: Mapping[str, Any], declared: Callable[[], Keys], width: 
             cells = {"Key": name, "Symbol": key.symbol, "Name": key.meaning, "Unit": key.unit}
             cells["Value"] = value_text(record[name])
             cells["Equation"] = key.equation
-            cells["Radius"] = value_text(record.get(f"{name}_radius"))
+            cells["Radius"] = value_text(record.get(f"{name}{RADIUS}"))
             rows.append([cells[heading] for heading in headings])
     summary, remark = record.get("summary"), record.get("remark")
     table = Grid(headings, rows, [headings.index("Value")])

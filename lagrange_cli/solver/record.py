@@ -10,7 +10,7 @@ from flint import arb
 
 from ..arithmetic.enclosures import Rounded, TooFewDigitsError, decided, rounded, settled, sign_to
 from ..errors import OutOfRangeError
-from ..names import suggestion
+from ..names import RADIUS, suggestion
 from ..top.top import Top
 from ..top.units import DEGREES, Units, bare_name
 from .facts import Facts, Regime
@@ -171,7 +171,7 @@ def record_in_range(
     if "psidot0" in record and motion.top.steady_word:
         record["psidot0"] = motion.top.steady_word
     if radii:
-        record |= {f"{name}_radius": number and number.radius for name, number in found.items()}
+        record |= {f"{name}{RADIUS}": number and number.radius for name, number in found.items()}
     return record, beyond
 
 

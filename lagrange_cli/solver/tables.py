@@ -33,6 +33,7 @@ from ..arithmetic.numbers import Real
 from ..arithmetic.text import NumberText, double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError, OutOfRangeError, arg
+from ..names import RADIUS
 from ..top.ranges import EvenPoints, Points
 from ..top.units import DEGREES, Units
 from .attitude import Course, SingleSwing, start_of
@@ -313,4 +314,4 @@ class ProvedTable:
             while block := list(islice(waiting, _ROWS_AT_ONCE)):
                 yield [texts(time) for time in block]
 
-        return [*self.header, *(f"{name}_radius" for name in bounded)], lists()
+        return [*self.header, *(f"{name}{RADIUS}" for name in bounded)], lists()

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import LagtopError, Message, SomeFailedError, marked
 from ..files.tops import Product, TopsFile, read_tops
+from ..names import RADIUS
 from ..output.formats import format_of
 from ..solver.keys import shown_keys
 from ..top.given import Given, gather
@@ -31,7 +32,7 @@ from ..top.ranges import Points
 from ..top.units import DEGREES, RADIANS, Units
 from ..top.values import Value
 from .conditions import Condition, read_condition
-from .records import RADIUS, check_keys, column_keys, records, with_radii
+from .records import check_keys, column_keys, records, with_radii
 
 BLOCK_ROWS = 4096
 """Number of tops in a part, but for files of Parquet."""

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arithmetic.bounded import EPS, Bounded, choose
 from ..errors import LagtopError
 from ..files.tops import Tops
-from ..names import check_names
+from ..names import RADIUS, check_names
 from ..solver import keys as motion_record
 from ..solver.facts import Regime
 from ..solver.keys import LINES
@@ -30,8 +30,6 @@ from .tops import INPUTS, TopArrays, top_arrays
 
 TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
-RADIUS = "_radius"
-"""The end of the name of a bound."""
 _TOGETHER = 1 << 13
 """Number of tops computed together: their arrays take at most 14 MB."""
 _DEGREE = Bounded(180 / np.pi, None, EPS, positive=True)

@@ -16,6 +16,7 @@ import numpy as np
 from ..arithmetic.bounded import EPS, PAIR_EPS, Bounded, choose, known, size_of
 from ..arithmetic.pairs import PI, DoubleDouble, pair
 from ..arithmetic.types import Array, Mask
+from ..names import RADIUS
 from ..solver.facts import Regime
 from ..top.forms import Quantities
 from ..top.inputs import FORMS, NINE, STEADY_WORDS, TILT, replaced_by
@@ -124,7 +125,7 @@ class TopArrays(NamedTuple):
         """Return inputs by key: in the form that all tops have, with the bounds of their errors."""
         found: dict[str, Any] = {}
         for key in keys:
-            form, radius, _ = key.partition("_radius")
+            form, radius, _ = key.partition(RADIUS)
             own = self.given.get(form)
             if bare_name(key) == TILT:
                 found[key] = self.tilt.in_unit(key)
