@@ -83,6 +83,8 @@ class Advice:
 
     def reasons(self) -> Iterator[Reason]:
         """Yield advice, the best first."""
+        if Kind.OPEN in self.kinds:
+            yield from (Reason(Kind.READING, x) for x in self._names())
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
         if DECAY in self.outcome.shown or Kind.MACHINE not in self.kinds:
@@ -124,6 +126,12 @@ class Advice:
         if even is not None and self._is_good(even, self.known, also=STEADY):
             apart = f"the rows are {even.frame:.6g} apart"
             yield f"t is rounded: write it with more digits ({apart})"
+
+    def _names(self) -> Iterator[str]:
+        """Yield that phi may be the precession, as in most books, if the fit is then good."""
+        recording = self.recording
+        if recording.angles.keys() == {"theta", "phi"} and self._is_good(recording.exchanged):
+            yield "phi may be the precession, as in most books: name its column psi"
 
     def _meanings(self) -> Iterator[str]:
         """Yield the misreadings without which the fit is good.

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import recordings
 from engines import Array
-from lagtop import fit, solve
+from lagtop import Top, fit, solve
 from noisy_recordings import (
     DEGREE,
     LAB,
@@ -336,5 +336,9 @@ def test_precession_in_a_column_of_the_spin_is_questioned() -> None:
     outcome = fit(t, theta=seen["theta"], phi=seen["psi"])
     question = "if phi were the precession: if it is, name its column psi"
     assert any(question in x for x in outcome.notes)
+    released = Top(**LAB, A=4.45e-3, C=2.5e-3, r0=100, theta0_deg=50)
+    times, angles = recorded("theta", "psi", top=released, rows=120, noise=0.3, seed=8)
+    hints = fit(times, theta=angles["theta"], phi=angles["psi"]).hints
+    assert hints == ["phi may be the precession, as in most books: name its column psi"]
     alone = fit(t, theta=seen["theta"], known={"psidot0": 0})
     assert not any(question in x for x in alone.notes)
