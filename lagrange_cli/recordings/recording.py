@@ -139,7 +139,7 @@ def recording_of(t: ArrayLike | None, arguments: Mapping[str, Any]) -> Recording
     given = {key: x for key, x in arguments.items() if x is not None and key not in options}
     reading = Reading.of(units=RADIANS, **options)
     if not given:
-        raise LagtopError("an attitude, an axis, angles or rates must be given, got none")
+        raise LagtopError("an attitude, an axis, angles or rates must be given by name, got none")
     check_names("arrays", [*given], [x for x in QUANTITIES if x != "t"])
     if t is None and reading.dt is None:
         raise LagtopError(f"t must be given, or {arg('dt')} or {arg('fps')}", "t")
