@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arithmetic import rotations
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError, arg
-from ..recordings.frames import alignment_of, in_frames, own_frames, turn_of
+from ..recordings.frames import alignment_of, in_frames, own_frames, refined, turn_of
 from ..recordings.misreadings import misreadings
 from ..recordings.options import Alignment
 from ..top.inputs import BODY, replaced_by
@@ -35,6 +36,8 @@ _LEAST_COST = 0.15
 """Cost of a window over that of the whole, at least."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
+_REFINED = 3
+"""Times that frames which are no axes are refined by the motion that is found in them."""
 _AS_CALM = 0.01
 """Logarithm of the noise beside harmonics that another frame may have more."""
 _CALMER = 0.1
@@ -73,7 +76,7 @@ class Advice:
 
     def __init__(self, recording: Measured, known: Known, outcome: Outcome, again: int = 0) -> None:
         self.recording, self.known, self.outcome = recording, known, outcome
-        self.kinds = {x.kind for x in outcome.failed}
+        self.kinds = outcome.kinds
         self.body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
         if len(recording.angles) == 1:  # of which a known start is a part
             self.body = dict(known)
@@ -111,7 +114,9 @@ class Advice:
 
         It must leave smaller residuals in most rows than the fit of the recording as it was read.
         """
-        found = self._fit(recording, known)
+        return self._is_better(self._fit(recording, known), also)
+
+    def _is_better(self, found: Outcome | None, also: str = GOOD) -> bool:
         if found is None or found.verdict not in {GOOD, also}:
             return False
         most = self.outcome.noisiness + _AS_NOISY * len(found.residuals)
@@ -156,11 +161,22 @@ class Advice:
         if self.recording.kind == "angles" or source.align.frame != Alignment().frame:
             return
         meanings = {"up": "of the data points up", "axis": "is the figure axis"}
-        up, body = own_frames(source.observed()) or (np.eye(3), np.eye(3))
-        for space in (up, up * [1, -1, -1]):
+        seen = source.observed()
+        up, figure = own_frames(seen) or (np.eye(3), np.eye(3))
+        for near in (up, up * [1, -1, -1]):
+            space, body = near, figure
             align = alignment_of((space, body), left=False)
+            if align == Alignment():
+                continue
             other = source.read_as(align=align) if align else in_frames(source, space, body)
-            if align == Alignment() or not self._is_good(measured(other)):
+            found = self._fit(measured(other))
+            for _ in range(0 if align else _REFINED):
+                if found is None or not found.failed or Kind.MOTION in found.kinds:
+                    break
+                exact = rotations.of_angles(*found.motion(seen.t - found.recording.t_start))
+                space, body = refined((space, body), seen, exact)
+                found = self._fit(measured(in_frames(source, space, body)))
+            if not self._is_better(found):
                 continue
             if align is None:
                 yield f"space is turned by {turn_of(space)}, the body by {turn_of(body)}"

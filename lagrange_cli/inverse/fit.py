@@ -34,7 +34,7 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     Raises DataError for a recording that cannot be fitted.
     """
     outcome, again = best_fit(recording, known, units=units), 0
-    if {Kind.OPEN, Kind.MOTION} & {x.kind for x in outcome.failed}:
+    if {Kind.OPEN, Kind.MOTION} & outcome.kinds:
         frequency = frequency_of_parts(recording)
         if frequency and abs(math.log(frequency / outcome.frequency)) > _OTHER:
             other, again = best_fit(recording, known, units=units, frequency=frequency), 1

@@ -161,6 +161,11 @@ class Outcome(HasRecord):
         return [x for x in found if x.kind < Kind.KNOWN] or found
 
     @property
+    def kinds(self) -> set[Kind]:
+        """The kinds of the reasons why the fit has failed."""
+        return {x.kind for x in self.failed}
+
+    @property
     def is_open(self) -> bool:
         """Whether the recording determines no top, or several."""
         return any(x.kind is Kind.OPEN for x in self.failed)

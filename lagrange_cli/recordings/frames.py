@@ -20,6 +20,8 @@ _LEAST = 3
 """Least number of rows."""
 _NEAR = 0.05
 """Greatest angle between an axis and the direction for which it is taken."""
+_ROUNDS = 20
+"""Times that each of two frames is found with the other one."""
 _ALIKE = 1.5
 """How much less the residual of a mirror must be than that of a rotation."""
 Frames = tuple[Array, Array | None]
@@ -41,6 +43,25 @@ def frames_of(seen: Observed, exact: Array) -> Frames | None:
     space = _wahba(_turns(given), _turns(exact))
     turned = space @ rotations.to_matrix(exact)
     return space, _nearest(np.einsum("nji,njk->ik", turned, rotations.to_matrix(given)), 1)
+
+
+def refined(frames: tuple[Array, Array], seen: Observed, exact: Array) -> tuple[Array, Array]:
+    """Return frames nearer to those in which an exact attitude is seen.
+
+    Each is a Wahba problem with the other one; an axis shows only that of space.
+    """
+    space, body = frames
+    given = seen.axis if seen.quaternion is None else seen.quaternion
+    if given is None:
+        return frames
+    rows = np.isfinite(given).all(axis=1)
+    if seen.quaternion is None:
+        return _wahba(given[rows], rotations.axis_of(exact[rows])), body
+    turned, given = rotations.to_matrix(exact[rows]), rotations.to_matrix(given[rows])
+    for _ in range(_ROUNDS):
+        space = _nearest(np.einsum("nij,nkj->ik", given, turned @ body), 1)
+        body = _nearest(np.einsum("nji,njk->ik", space @ turned, given), 1)
+    return space, body
 
 
 @np.errstate(all="ignore")  # rows may repeat
