@@ -55,6 +55,19 @@ def test_exchanged_angles_that_fit_nearly_as_well_are_noticed() -> None:
     assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
 
 
+@pytest.mark.slow
+def test_arbitrary_frames_are_found_to_the_noise() -> None:
+    """Frames by differences of rows are 0.2 degrees off, three times the noise."""
+    top = Top(m=1, A=1, C=0.43, s=1, g=8.6, r0=13, theta0_deg=82, psidot0=-0.8)
+    t, rng = np.linspace(0, 13.5, 200), np.random.default_rng(3)
+    theta, phi, psi = (motion_of(top, t)[x] for x in ("theta", "phi", "psi"))
+    turns = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=-1))
+    noise = Rotation.from_rotvec(rng.normal(scale=1e-3, size=(200, 3)))
+    space, body = Rotation.random(2, random_state=3)
+    seen = (noise * space * turns * body).as_quat(scalar_first=True)
+    assert "; space is turned by " in fit(t, quaternion=seen).failure()
+
+
 def test_an_outlier_is_named() -> None:
     t, seen = recorded("theta", "psi", seed=8)
     seen["psi"][30] += 20 * DEGREE
