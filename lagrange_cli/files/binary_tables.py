@@ -15,6 +15,7 @@ from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
 from ..errors import DataError, UnavailableError, install
 from ..file_bytes import LARGEST_FILE
+from .matlab_elements import check_elements
 from .text_tables import NumericColumns, Table
 
 _TIMES = ("timestamp", "duration")
@@ -123,6 +124,7 @@ def _matlab(content: bytes, name: str) -> Table:
     if b"MATLAB 7.3" in content[:128]:
         raise DataError(f"{name}: MATLAB 7.3 files are not read: save it with -v7")
     with _decoding(name, "MATLAB"):
+        check_elements(content, LARGEST_FILE)
         found: Mapping[str, Any] = loadmat(BytesIO(content), simplify_cells=True)
     found = {x: y for x, y in found.items() if not x.startswith("__")}
     if len(found) == 1 and isinstance(only := next(iter(found.values())), dict):

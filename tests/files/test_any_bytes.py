@@ -112,3 +112,15 @@ def test_a_file_without_end_is_refused(words: str) -> None:
     assert (done.returncode, done.stdout) == (65, b"")
     assert done.stderr.count(b"\n") == 1
     assert b"must have at most" in done.stderr
+
+
+@pytest.mark.parametrize(("at", "value"), [(144, 5), (144, 3), (145, 8), (176, 200), (177, 9)])
+def test_a_matlab_file_at_which_scipy_crashes_is_refused(
+    at: int, value: int, tmp_path: Path
+) -> None:
+    """The class, the flag of complex numbers and the type of data of an array are changed."""
+    content = bytearray(written(lambda stream: savemat(stream, COLUMNS)))
+    content[at] = value
+    (tmp_path / "a.mat").write_bytes(content)
+    with pytest.raises(DataError, match=r"a\.mat: bad MATLAB file: "):
+        read_times(str(tmp_path / "a.mat"))
