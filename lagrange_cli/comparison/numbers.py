@@ -28,6 +28,8 @@ _OPEN, _SAME, _DECAY = 0.2, 2e-3, 1e-3
 _COARSE, _FINE = 0.25, 0.04
 """Turns from row to row, in radians: of a step that may be coarse, and of rows that are left out if
 there are too many."""
+_HIDDEN = 1.0
+"""Phase of a nutation from row to row, in radians, beyond which rows do not show it."""
 
 
 class Estimate(NamedTuple):
@@ -51,8 +53,13 @@ class Estimate(NamedTuple):
         return self.axis.residual <= TRUSTED
 
     def is_near(self, top: Top, clock: float = 1.0, share: float = 0.02) -> bool:
-        """Return whether the axis of a top, with another clock, might move like this one."""
+        """Return whether the axis of a top, with another clock, might move like this one.
+
+        Rows do not show a nutation that is much faster than they are.
+        """
         (a, b), axis = a_and_b(top), self.axis
+        if abs(b * clock) * self.step > _HIDDEN:
+            return True
         share += 3 * axis.residual
         off_a, off_b = abs(a * clock**2 - axis.a), abs(abs(b * clock) - abs(axis.b))
         is_near_a = off_a <= share * max(a * clock**2, axis.a) + axis.a_spread
