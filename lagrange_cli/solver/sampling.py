@@ -48,7 +48,6 @@ _TINY = 5e-324
 """The smallest argument that is not 0."""
 _LEAST, _MOST = 2.0**-900, 2.0**900
 """Sizes of constants between which no product or part of a constant is a subnormal double."""
-np.empty(2**19)  # glibc keeps freed memory from now on: pages are not faulted again in each call
 Index = slice | NDArray[np.intp]
 ItemsAt = Callable[[Array, float], Iterator[tuple[Index, dict[str, Any]]]]
 """A function of times and of max |t| that yields the items of formulas at some times, by index.

@@ -35,9 +35,6 @@ _TOGETHER = 1 << 13
 _DEGREE = Bounded(180 / np.pi, None, EPS, positive=True)
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which no rounding error is lost."""
-_KEPT = 1 << 22
-"""Bytes: once such an array is freed, glibc keeps twice as many for the next arrays.  Otherwise it
-returns them to the system, and each block takes half as long again."""
 Rows = NDArray[np.intp]
 Columns = dict[str, ResultColumn]
 
@@ -104,7 +101,6 @@ def records(
     These tops have an error if the tops must be bodies.  The column of errors is empty.  The result
     does not depend on the `numpy.errstate` of the caller.
     """
-    np.empty(_KEPT, np.uint8)
     columns: Columns = {
         key: np.full(block.size, None if key in TEXTS else np.nan) for key in dict.fromkeys(keys)
     }
