@@ -19,8 +19,6 @@ from scipy.special import ellipj, ellipkm1, elliprc, elliprf, elliprj
 
 from ..arithmetic.types import Array
 
-STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
-"""The arguments of `states_of`."""
 _TINY = 1e-30
 
 

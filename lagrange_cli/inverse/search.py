@@ -225,10 +225,10 @@ def _minima(
     Each way, psi is counted in one direction.  None is refined if no motion of a top matches.
     """
     found: list[tuple[float, Problem, Array]] = []
-    noise = ways[0].sigma or noise_of(signals_in(ways[0]), 1.0, ways[0])
+    each = [signals_in(way) for way in ways]
+    noise = ways[0].sigma or noise_of(each[0], 1.0, ways[0])
     sizes = np.maximum([noise[x] for x in ways[0].channels], floors)
-    for way in ways:
-        signals = signals_in(way)
+    for way, signals in zip(ways, each, strict=True):
         count = _STARTS["theta" not in way.angles]
         problem, x = problem_of(way, sizes, *best_starts(way, signals, sizes, known, count), ties)
         if not len(x):
