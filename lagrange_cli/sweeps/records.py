@@ -120,7 +120,7 @@ def records(
             if are_bodies:
                 errors |= dict.fromkeys(not_body.tolist(), _NO_BODY)
             fine = np.ones(rows.size, dtype=np.bool_)
-            fine[[row - first for row in errors if row >= first]] = False
+            fine[[row - first for row in errors if first <= row < first + rows.size]] = False
             for group, mask in tops.groups().items():
                 mine = np.flatnonzero(mask & fine)
                 fine &= ~mask

@@ -168,6 +168,20 @@ def test_a_folder_of_parquet_is_a_data_set(
     assert [json.loads(x)["K"] for x in rows.splitlines()] == table["K"].to_pylist()[131_072:]
 
 
+def test_a_large_part_keeps_the_error_of_a_late_row(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tops of a part are computed in smaller blocks."""
+    monkeypatch.setattr("lagrange_cli.sweeps.plan.BLOCK_ROWS", 4096)
+    tops, parts = tmp_path / "tops.csv", tmp_path / "parts"
+    tops.write_text("r0\n" + "50\n" * 9_000 + "x\n" + "50\n" * 9_000)
+    done = lagtop("sweep", tops, "--keys", "K", "--format", "parquet", "--parts", parts)
+    assert "1 of 18001 tops have an error; the first: line 9002: r0 must be" in done.stderr
+    table = dataset.dataset(parts).to_table()
+    assert table["K"].null_count == 1
+    assert table["error"].null_count == 18_000
+
+
 def test_odd_files_in_the_folder_stop_no_run(tmp_path: Path, lagtop: Lagtop) -> None:
     """A FIFO is not read, and what a killed run has half written is written again."""
     description, whole = tmp_path / "_sweep.json", lagtop(*GRID).stdout_bytes
