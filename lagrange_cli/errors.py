@@ -35,12 +35,15 @@ class Message(str):
         return found
 
     def with_options(self, options: Mapping[str, str]) -> str:
-        """Return the text with options for the arguments that have one."""
+        """Return the text with options for the arguments that have one.
+
+        The name `x=` stands for an argument `x` with a value, if its option differs.
+        """
         parts = self.marked.split(MARK)
         for i, part in enumerate(parts[1::2]):
             name, equals, value = part.partition("=")
-            if name in options:
-                parts[2 * i + 1] = options[name] + equals.replace("=", " ") + value
+            if option := options.get(name + equals) or options.get(name):
+                parts[2 * i + 1] = option + equals.replace("=", " ") + value
         return "".join(parts)
 
 

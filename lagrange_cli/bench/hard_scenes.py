@@ -146,10 +146,6 @@ extreme-sizes | | moving | in_units(12)
 """
 """The kinds of `stability`, which its README describes."""
 _HALF_PI = Fraction("1.57079632679489661923132169163975144209858469968755291048747")
-_TO_NEIGHBOURS = 0.3
-"""The share of numbers near a value that are the double itself, or up to two doubles from it."""
-
-
 _TO_NEIGHBOURS, _MOST_STEPS = 0.3, 2
 """Of the numbers near a value: the share that are at most so many doubles away."""
 

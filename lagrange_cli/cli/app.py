@@ -180,13 +180,14 @@ def _check_environment() -> None:
 
 
 def options_of(command: click.Command) -> dict[str, str]:
-    """Return the options by the names of arguments; those of a tilt have a unit.
+    """Return the options by the names of arguments; a tilt with a value has a unit.
 
     A number beyond the doubles has digits in `solve`, if the command itself has no such option.
     """
     found = {x.opts[-1].lstrip("-").replace("-", "_"): x.opts[-1] for x in command.params}
     if "theta0" in found:
-        found |= {"theta0_deg": found["theta0"], "theta0_rad": f"--rad {found['theta0']}"}
+        tilt = found["theta0"]
+        found |= {"theta0_deg": tilt, "theta0_rad": tilt, "theta0_rad=": f"--rad {tilt}"}
     options = {name: option for name, option in found.items() if option.startswith("--")}
     return {"digits": "solve --digits"} | options
 

@@ -48,10 +48,11 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
 
 def _table(row: Explained) -> Grid | str:
     """Return the table of a key or column; each equation of a formula has a line of its own."""
+    value = "" if row.value is None else value_text(row.value)
     texts = {
         "formula": row.formula,
         "numbers": row.numbers,
-        "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}",
+        "value": value if isinstance(row.value, str) else f"{value} {row.unit}".strip(),
         "missing": row.missing,
     }
     about = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))

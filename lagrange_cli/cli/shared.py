@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from functools import partial, wraps
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
@@ -97,7 +98,14 @@ LIST = Parsed("NAME,...", _parse_list)
 TIME = values()
 _DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
 
-option = click.option
+
+def option(*names: str, **settings: Any) -> Callable[[F], F]:
+    """Declare an option; a list of names that is given twice is one list."""
+    if settings.get("type") is LIST:
+        settings |= {"multiple": True, "callback": lambda _, __, lists: [*chain(*lists)] or None}
+    return click.option(*names, **settings)
+
+
 rad = option("--rad", is_flag=True, help="Use radians for all angles, input and output.")
 certify = option(
     "--certify",

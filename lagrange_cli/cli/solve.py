@@ -65,13 +65,11 @@ def solve_command(
     units = found.units(radians=top.radians)
     if get is not None:
         get = _selected(get, units)
+    of_stds = [key for key in get or () if key.endswith("_std")]
+    if samples and get and not of_stds and not out.is_named:
+        raise LagtopError(f"--samples estimates uncertainties: add {get[0]}_std to --get")
     opt.exclude(budget=budget, samples=samples)
-    if (
-        found.stds
-        or budget is not None
-        or samples
-        or any(key.endswith("_std") for key in get or ())
-    ):
+    if found.stds or budget is not None or samples or of_stds:
         from . import uncertainty
 
         uncertainty.check(found, digits=digits, derivation=derivation, certify=certify)

@@ -43,6 +43,8 @@ def rows(text: str) -> list[list[float]]:
 def test_a_symbol_is_accepted_where_a_key_is(lagtop: Lagtop) -> None:
     by_key = lagtop("solve", "--get", "T_nutation,mean_precession_rate,theta_max_deg")
     assert lagtop("solve", "--get", "T,ψ' mean,ϑ max").stdout == by_key.stdout
+    twice = lagtop("solve", "--get", "T,ψ' mean", "--get", "ϑ max")
+    assert twice.stdout == by_key.stdout  # and nothing of the first list is lost
     radians = "solve --rad --theta0 0.5 --get".split()
     assert lagtop(*radians, "ϑ max").stdout == lagtop(*radians, "theta_max_rad").stdout
     budget = lagtop("solve", "--r0", "50(1)", "--budget", "T")
