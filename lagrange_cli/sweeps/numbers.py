@@ -130,6 +130,8 @@ _FORMULAS = {
     "height": "rise + fall",
     "wide": "far + a*fall",
     "m_k": "a*height/wide",
+    "swing": "thetadot0**2",
+    "over": "swing - a*above_u0",
 }
 """Numbers that formulas of `keys` use."""
 
@@ -155,7 +157,7 @@ class ArrayNumbers(dict[str, Any]):
     certain if the axis of a top with initial rates passes over a pole.
     """
 
-    separatrix = over_top = False
+    separatrix = False
 
     def __init__(self, tops: TopArrays, regime: Regime | None, *, pairs: bool = False) -> None:
         """Take tops of one group, to be computed in doubles or in pairs of doubles.
@@ -167,9 +169,8 @@ class ArrayNumbers(dict[str, Any]):
         self.pole = {Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0)  # type: ignore
         self.vertical = bool(self.pole)
         self.steady = regime not in {Regime.REGULAR, Regime.NO_SPIN, None}
-        self.nutates, self.released = not self.steady, regime not in {Regime.STEADY, None}
-        self.plane = regime is Regime.NO_SPIN
-        self.off_poles = self.half_off_pole = not self.plane
+        self.nutates, self.plane = not self.steady, regime is Regime.NO_SPIN
+        self.off_poles = not self.plane
         self["pi"] = pi_of(pairs=pairs)
         self.finer = None if pairs or regime else ArrayNumbers(tops, regime, pairs=True)
         if self.finer:
@@ -222,10 +223,27 @@ class ArrayNumbers(dict[str, Any]):
     fast = property(lambda self: self.regime is Regime.REGULAR and self["over_fast"].doubles >= 0)
 
     @property
+    def released(self) -> Any:
+        """The top is released from rest."""
+        if self.plane:
+            return self["thetadot0"].doubles == 0
+        return self.regime not in {Regime.STEADY, None}
+
+    @property
+    def over_top(self) -> Any:
+        """The axis passes over the upper pole: a pendulum that turns over."""
+        return self.plane and self["over"].doubles > 0
+
+    @property
+    def half_off_pole(self) -> Any:
+        """The axis is not vertical half a period after the start."""
+        return ~self.released if self.plane else True
+
+    @property
     def turning(self) -> Any:
         """1 for a start at u1, -1 at u2, 0 between."""
         if self.regime is not None:
-            return int(self.nutates)
+            return self.nutates * self.released
         at_u1 = (self.finer or self)["rise"].doubles == 0
         return np.where(self["thetadot0"].doubles == 0, np.where(at_u1, 1, -1), 0)
 
@@ -266,13 +284,32 @@ class ArrayNumbers(dict[str, Any]):
             around = self["psidot0"] * sine
             far = self._root(around * around + self["square_of_steady"])
             return Gaps(zero, zero, far, above, above, below, below, far - a * above)
-        if not self.released:
+        if self.plane:
+            return self._gaps_of_pendulums()
+        if self.regime is None:
             return self._gaps_of_any_start()
         far = self._root(released_root(0.5 * (b * b) - a * u0, a * sine))
         fall, square = a * (sine * sine) / far, b * b
         above_u2, below_u2 = above + fall, square * below / (far + a * below)
         a_above_u3 = square * above / above_u2
         return Gaps(zero, fall, far, above, above_u2, below, below_u2, a_above_u3)
+
+    def _gaps_of_pendulums(self) -> Gaps:
+        """Return the gaps if b = beta = 0: two roots are -1 and 1, and `over` is a (u - 1) at the
+        third one, u."""
+        a, above, below, swing = (self[x] for x in ("a", "above_u0", "below_u0", "swing"))
+        zero, two = Bounded(0.0, positive=True), Bounded(2.0, positive=True)
+        turns, past = self.over_top, self._root(abs(self["over"]))
+        return Gaps(
+            rise=choose(turns, above, swing / a),
+            fall=below,
+            far=choose(turns, swing, a * above),
+            above_u1=choose(turns, zero, past / a),
+            above_u2=two,
+            below_u1=choose(turns, two, below + swing / a),
+            below_u2=zero,
+            a_above_u3=choose(turns, past, zero),
+        )
 
     def _root(self, x: Bounded) -> Bounded:
         return x if self.pairs else known(x, _RELEASED)
@@ -310,7 +347,7 @@ class ArrayNumbers(dict[str, Any]):
     @property
     def narrow(self) -> Any:
         """a (u3 - u1)."""
-        if self.regime is not None:
+        if not self.plane and self.regime is not None:
             return self["far"]
         return self["a_above_u3"] + self["a"] * self["above_u1"]
 
@@ -338,7 +375,8 @@ class ArrayNumbers(dict[str, Any]):
             return r0 - self["psidot0"] * self["u0"] * (not self.vertical), self["psidot0"]
         if self.plane:  # a half turn at the bottom
             half_turn = self["pi"] / self["T_nutation"]
-            return half_turn, half_turn
+            over = self.over_top
+            return choose(over, Bounded(0.0), half_turn), choose(over, 2.0 * half_turn, half_turn)
         gaps = self["gaps"]
         if self.released:  # at u1 without precession
             south, north = mean_parts(gaps, self["k_prime"], gaps.rise, gaps.fall)

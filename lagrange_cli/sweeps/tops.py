@@ -163,14 +163,15 @@ class TopArrays(NamedTuple):
         at_rest = ordinary & ~falls & (x["psidot0"] == 0)
         inclined = ordinary & ~(upright | hanging)
         released = inclined & at_rest & torque
+        pendulum = inclined & torque & (x["r0"] == 0) & (x["psidot0"] == 0)
         groups = {
             Regime.SLEEPING: at_rest & upright,
             Regime.HANGING: at_rest & hanging,
             Regime.TORQUE_FREE: inclined & at_rest & ~torque,
-            Regime.NO_SPIN: released & (x["r0"] == 0),
+            Regime.NO_SPIN: pendulum & self._are_off_separatrix(),
             Regime.REGULAR: released & (x["r0"] != 0),
             Regime.STEADY: inclined & steady & torque & ~falls & self._have_steady_rates(),
-            None: inclined & ~steady & torque & (falls | (x["psidot0"] != 0)),
+            None: inclined & ~steady & torque & ~pendulum & (falls | (x["psidot0"] != 0)),
         }
         units = [unit for unit in (True, False) if (in_degrees == unit).any()]
         return {
@@ -178,6 +179,14 @@ class TopArrays(NamedTuple):
             for regime, mask in groups.items()
             for unit in units
         }
+
+    def _are_off_separatrix(self) -> Mask:
+        """Return the pendulums of which doubles decide whether they turn over."""
+        m, A, s, g, rate = (self.numbers[name] for name in ("m", "A", "s", "g", "thetadot0"))
+        swing = rate * rate
+        over = swing - 4 * m * g * s / A * np.sin(self.tilt.in_unit("theta0_rad") / 2) ** 2
+        found: Mask = abs(over) >= _NEAR_1 * swing
+        return found
 
     def _have_steady_rates(self) -> Mask:
         """Return the tops with rates of steady precession; `solve` gives the others an error."""

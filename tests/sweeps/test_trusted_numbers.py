@@ -73,6 +73,8 @@ def test_every_key_is_within_its_bound(kind: str, count: int) -> None:
 
 
 EXAMPLE = {name: float(getattr(Top(), name)) for name in ("m", "A", "C", "s", "g")}
+UPRIGHT = 2 * math.sqrt(39032 * 1587 * 4 * 981) / 39032
+"""The rate at the bottom of a pendulum that just reaches the top."""
 WHIRLS, STIFF = random.Random(4), random.Random("stiff")
 CANCELLING: dict[str, list[Scene]] = {
     "over the lower pole from next to the upper one": [
@@ -88,6 +90,11 @@ CANCELLING: dict[str, list[Scene]] = {
         EXAMPLE | {"theta0_deg": tilt, "r0": 2 * math.sqrt(39032 * 1587 * 4 * 981) / 17458 * more}
         for tilt in (0.3, 1e-3, 1e-6)
         for more in (1 + 1e-4, 1 + 1e-8, 1 - 1e-8)
+    ],
+    "pendulums next to the separatrix": [
+        EXAMPLE | {"r0": 0, "theta0_deg": tilt, "thetadot0": UPRIGHT * sin * (1 + off)}
+        for tilt, sin in ((60, 0.5), (180 - 1e-9, 1.0))
+        for off in (-1e-3, 1e-7, -1e-12, 3e-15)
     ],
     # parts that cancel are computed in pairs of doubles; the worst error seen is 0.5 eps
     "mean rates in pairs of doubles": [
@@ -210,6 +217,10 @@ def test_no_ordinary_top_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) ->
     for rates in (0.0, rng.uniform(-5, 5, 2000)):
         found = sweep(**start, psidot0=rates, keys=[*KEYS])
         assert not np.isnan(found["stability_factor"]).any()
+    ends = UPRIGHT * np.sin(np.radians(start["theta0_deg"]) / 2)
+    for rate in (ends * (1 + 10 ** rng.uniform(-12, 1, 2000)), ends * rng.uniform(-1, 1, 2000)):
+        found = sweep(**start | {"r0": 0.0}, thetadot0=rate, keys=[*KEYS])
+        assert not np.isnan(found["T_nutation"]).any()
     fast = start | {"r0": rng.uniform(57, 99, 2000)}
     for word in ("steady", "steady-fast"):
         assert not np.isnan(sweep(**fast, psidot0=word, keys=["T_spin", "u3"])["T_spin"]).any()
