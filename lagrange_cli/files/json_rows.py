@@ -54,11 +54,14 @@ def _keys_in(value: Any, depth: int = -2) -> int:
 def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2) -> list[Any]:
     """Return the rows in the JSON value of a file: an array, an object of columns, or one object.
 
+    An array may be an object whose keys are 0, 1, ..., as `DataFrame.to_json` of pandas writes it.
     Columns are lists, among which `known` counts known names.  The rows may be in an entry such as
     `data`.  Raises LagtopError for columns of different lengths.
     """
+    value = _array(value)
     if not isinstance(value, dict):
         return value if isinstance(value, list) else [value]
+    value = {x: _array(y) for x, y in value.items()}
     lists = {x: y for x, y in value.items() if isinstance(y, list)}
     columns = {x: y for x, y in lists.items() if y and not isinstance(y[0], str)}
     if known([*columns]):
@@ -72,6 +75,12 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
         if isinstance(rows, list) and len(rows) > 1 and isinstance(rows[0], dict):
             return rows
     return [value]
+
+
+def _array(value: Any) -> Any:
+    """Return an object whose keys are 0, 1, ... as a list, and other values as they are."""
+    is_numbered = isinstance(value, dict) and [*value] == [*map(str, range(len(value)))] != []
+    return [*value.values()] if is_numbered else value
 
 
 def entries_of(row: Any, sizes: dict[str, int]) -> dict[str, Any]:
