@@ -70,7 +70,7 @@ def test_missing_numbers_are_nan_and_times_may_run_backwards(tmp_path: Path) -> 
 def test_json_of_pandas_in_every_order_with_names(orient: Any, tmp_path: Path) -> None:
     frame = pandas.DataFrame({"t": range(12), "theta": range(30, 42)})
     frame.to_json(tmp_path / "a.json", orient=orient)
-    assert read(tmp_path / "a.json")["theta"][:, 0].tolist() == [*np.radians(range(30, 42))]
+    assert read(tmp_path / "a.json")["theta"][:, 0].tolist() == [*range(30, 42)]
 
 
 def test_every_quantity_can_be_named_as_a_whole() -> None:
