@@ -42,6 +42,9 @@ _FINE = 0.9 * GOOD
 """Relative error up to which a mean rate is good enough for what is computed from it."""
 _RELEASED, _FROM_PAIRS = 64 * EPS, 8 * EPS
 """Relative errors up to which the gaps of tops are good enough, released ones and others."""
+_FROM_CUBIC = 2.0**-60
+"""Relative error of the distances of u1 and u3 from the upper pole above which another cubic is
+tried."""
 _NEWTON_STEPS, _STEPS_IN_PAIRS, _MEAN_STEPS = 100, 2, 11
 
 
@@ -315,26 +318,35 @@ class ArrayNumbers(dict[str, Any]):
         return x if self.pairs else known(x, _RELEASED)
 
     def _gaps_of_any_start(self) -> Gaps:
+        """Return the gaps from the cubic in u - u0 or, next to the separatrix, in 1 - u."""
         a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
         sine, momentum = self["theta0"][0], self["momentum"]
-        around, along = self["psidot0"] * sine, sine * self["thetadot0"]
-        energy = self["thetadot0"] * self["thetadot0"] + around * around
-        c0 = along * along
-        c1 = 2.0 * (b * momentum - u0 * energy) - a * (sine * sine)
-        c2 = 2.0 * (a * u0) - energy - b * b
-        far = largest_root(c2, a * c1, a * (a * c0))
-        total, product = (c1 + a * c0 / far) / far, c0 / far
-        larger = (abs(total) + sqrt(total * total + 4.0 * product)) * 0.5
-        smaller = product / larger
-        upward = total.doubles >= 0
-        rise, fall = choose(upward, larger, smaller), choose(upward, smaller, larger)
         north, south = self["beta_minus_b"], self["beta_plus_b"]
+        around, along = self["psidot0"] * sine, sine * self["thetadot0"]
+        energy, square = self["thetadot0"] * self["thetadot0"] + around * around, along * along
+        c1 = 2.0 * (b * momentum - u0 * energy) - a * (sine * sine)
+        far, rise, fall = roots_of_cubic(a, 2.0 * (a * u0) - energy - b * b, c1, square)
         below_u1, above_u2 = below + rise, above + fall
         a_above_u3 = far - a * above
         above_u1 = best(above - rise, lambda: north * north / (above_u2 * a_above_u3))
         a_above_u3 = best(a_above_u3, lambda: north * north / (above_u1 * above_u2))
         below_u2 = best(below - fall, lambda: south * south / (below_u1 * (far + a * below)))
-        return Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
+        found = Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
+        lost = ~(relative_errors(above_u1) + relative_errors(a_above_u3) <= _FROM_CUBIC)
+        if not lost.any():
+            return found
+        past = energy - a * above  # alpha - a
+        c1 = 2.0 * (b * north - past)
+        wide, above_u1, past_pole = roots_of_cubic(a, past + b * b - 2.0 * a, c1, north * north)
+        above_u2, a_above_u3 = wide / a, a * past_pole
+        far, rise, fall = a_above_u3 + a * above, above - above_u1, above_u2 - above
+        rise = best(rise, lambda: square / (far * fall))
+        fall = best(fall, lambda: square / (far * rise))
+        below_u1 = 2.0 - above_u1
+        below_u2 = best(2.0 - above_u2, lambda: south * south / (below_u1 * (far + a * below)))
+        other = Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
+        lost &= relative_errors(a_above_u3) <= relative_errors(found.a_above_u3)
+        return Gaps(*(choose(lost, y, x) for x, y in zip(found, other, strict=True)))
 
     @property
     def roots(self) -> tuple[Bounded, Bounded]:
@@ -485,6 +497,22 @@ def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any]
         if not going.any():
             break
     return values, steps
+
+
+def roots_of_cubic(
+    a: Bounded, c2: Bounded, c1: Bounded, c0: Bounded
+) -> tuple[Bounded, Bounded, Bounded]:
+    """Return a X, Y and Z from a x^3 + c2 x^2 + c1 x + c0 with c0 >= 0 and the roots X, Y and -Z,
+    where X is the largest, and Y and Z are not negative.
+
+    X leaves a quadratic with a negative last coefficient, so that its discriminant is a sum.
+    """
+    largest = largest_root(c2, a * c1, a * (a * c0))
+    total, product = (c1 + a * c0 / largest) / largest, c0 / largest
+    larger = (abs(total) + sqrt(total * total + 4.0 * product)) * 0.5
+    smaller = product / larger
+    upward = total.doubles >= 0
+    return largest, choose(upward, larger, smaller), choose(upward, smaller, larger)
 
 
 def largest_root(c2: Bounded, c1: Bounded, c0: Bounded) -> Bounded:
