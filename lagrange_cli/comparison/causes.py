@@ -108,8 +108,9 @@ class _Search:
                 named.append(x)
         if len(named) > _NAMES:
             named = named[:_NAMES] if limit <= self.limit else []
-        named = [x._replace(error=self.error(x)) for x in named]
-        return [x for x in named if x.error <= enough]
+        if named:  # the others leave about as little
+            named[0] = named[0]._replace(error=self.error(named[0]))
+        return named if named and named[0].error <= enough else []
 
     def fitting(self, cause: Cause, enough: float) -> list[Cause]:
         """Return a cause if it leaves little, or its pairs with causes of the rates that do."""
@@ -150,7 +151,7 @@ class _Search:
             yield self.engines()
         rows = [x for x in [*self.placed(none), *singles] if x.name != BACKWARDS]
         yield [*filter(self.agrees, rows)], _MOST
-        yield [*filter(self.agrees, inputs)], _MOST
+        yield [*filter(self.agrees, [*self.rates_of_clock(), *inputs])], _MOST
 
     def pairs(self, causes: Sequence[Cause]) -> list[Cause]:
         """Return two causes of different kinds at once: a misreading, and another one or a top."""
@@ -212,6 +213,8 @@ class _Search:
         span = float(np.ptp(self.run.t)) * ratio
         ratio = self.clock("factor", ratio, _STEP / (self.rate * span), _CLOCK * ratio)
         name = f"the clock is {percent(1 / ratio)} {'fast' if ratio < 1 else 'slow'}"
+        if not 0.5 < ratio < 2:
+            name = f"the unit of t is {ratio:.4g} times that of the rates"
         return [of_clock(name, factor=ratio)]
 
     def shifts(self) -> Iterator[tuple[list[Cause], float]]:

@@ -12,6 +12,7 @@ from ..arithmetic import rotations
 from ..arithmetic.types import Array
 from ..recordings.axis_equation import AxisMotion, from_spline
 from ..recordings.frames import own_frames
+from ..recordings.misreadings import evenly_timed
 from ..recordings.observed import Observed, rows_of
 from ..recordings.recording import Recording
 from ..top.top import Top
@@ -77,6 +78,7 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
     """Return what a trajectory shows, None if it gives no axis in enough rows."""
     if not 0 < np.ptp(run.t) < math.inf:
         return None
+    run = evenly_timed(run)
     if run.t[0] > run.t[-1]:
         run = run._replace(given=rows_of(run.given, slice(None, None, -1)))
     (a, b), r0 = a_and_b(top), float(top.r0)
@@ -142,8 +144,9 @@ def _spin(seen: Observed, r0: float) -> tuple[float | None, float]:
 
 def _start(t: Array, axis: Array) -> Array:
     """Return the tilt, its rate, and the rate around the vertical in the first row."""
-    span, n = t[:_FIRST][-1] - t[0] or 1.0, axis[0]
-    rate = np.polyfit((t[:_FIRST] - t[0]) / span, axis[:_FIRST], 5)[-2] / span
+    t, rows = np.unique(t[: 2 * _FIRST], return_index=True)  # times may repeat
+    span, n = np.ptp(t[:_FIRST]), axis[0]
+    rate = np.polyfit((t[:_FIRST] - t[0]) / span, axis[rows][:_FIRST], 5)[-2] / span
     sine = math.hypot(n[0], n[1])
     slope = -rate[2] / sine if sine > 1e-9 else np.linalg.norm(rate)
     around = (n[0] * rate[1] - n[1] * rate[0]) / (sine or 1.0)

@@ -15,6 +15,7 @@ from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError, Message, marked
 from ..file_bytes import shown_path
 from ..names import ANGLES
+from ..recordings.clocks import frames_of
 from ..recordings.doubts import check_position
 from ..recordings.observed import Observed, rows_of
 from ..recordings.recording import Recording
@@ -37,11 +38,6 @@ _UNEVEN = 0.05
 def are_whole(frames: Array) -> bool:
     """Return whether times in units of a frame are whole numbers, except for jitter."""
     return bool(np.mean(np.abs(frames - np.round(frames))) < _UNEVEN)
-
-
-def frames_of(t: Array, frame: float) -> Array:
-    """Return the number of the frame of each time, the first 0, for a rough length of a frame."""
-    return np.concatenate([[0.0], np.cumsum(np.round(np.diff(t) / frame))])
 
 
 @dataclass(frozen=True)

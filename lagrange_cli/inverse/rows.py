@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.types import Array, Mask
-from .measured import LEAST_ROWS, Measured, frames_of
+from ..recordings.clocks import even_times
+from .measured import LEAST_ROWS, Measured
 from .signals import noise_of, oscillation_in, signals_in
 
 _COARSE = 0.05
@@ -29,10 +30,6 @@ _RELEASED = 6.0
 """Standard deviations that show a release."""
 _STILL = 3.5
 """Scatter of the rows before a release, over the noise of neighbours, above which they move."""
-_WHOLE = 1e-4
-"""Deviation of rounded times from whole units, in units."""
-_ROUNDED = 0.6
-"""Deviation of rounded times from even ones, in units."""
 
 
 def repeated(recording: Measured) -> str:
@@ -109,17 +106,8 @@ def likely_gap(recording: Measured) -> tuple[int, int] | None:
 
 def evenly_timed(recording: Measured) -> Measured | None:
     """Return a recording at even times, if its times are these after rounding to some digits."""
-    t = recording.t_start + recording.t
-    sizes = (10.0**-k for k in range(9))
-    unit = next((x for x in sizes if np.abs(t / x - np.round(t / x)).max() < _WHOLE), 0.0)
-    frames = np.arange(t.size, dtype=float)
-    for _ in range(4):
-        step, start = np.polyfit(frames, recording.t, 1)
-        off = np.abs(recording.t - start - step * frames)
-        if unit / 10 < np.median(off) and off.max() < _ROUNDED * unit:
-            return replace(recording, t=step * frames)
-        frames = frames_of(recording.t, step)  # some are missing
-    return None
+    even = even_times(recording.t_start + recording.t)
+    return None if even is None else replace(recording, t=even - even[0])
 
 
 def calmness(recording: Measured) -> float:

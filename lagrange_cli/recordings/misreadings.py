@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import arg
 from ..names import ANGLES
 from ..top.units import unit_of_text
+from .clocks import even_times
 from .options import OPTION_OF
 from .recording import Recording
 
@@ -56,6 +57,8 @@ def _of_clock(recording: Recording) -> Iterator[Misreading]:
         factors |= {name: (1 / x, arg("fps", x)) for x, name in frames.items()}
     for name, (factor, remedy) in factors.items():
         yield Misreading(name, partial(Recording.timed, factor=factor), remedy, "clock")
+    if even_times(recording.t) is not None:
+        yield Misreading("t is rounded", evenly_timed, "write it with more digits", "rows")
 
 
 def _of_conventions(recording: Recording) -> Iterator[Misreading]:
@@ -110,6 +113,15 @@ def _scale(recording: Recording) -> str:
         np.fmax.reduce(np.abs(np.degrees(x)), axis=None) <= 2 * math.pi for x in angles
     )
     return "attitude" if is_possible else "scale"
+
+
+def evenly_timed(recording: Recording) -> Recording:
+    """Return a recording at even times if its times are rounded."""
+    even = even_times(recording.t)
+    if even is None:
+        return recording
+    given = {**recording.given, "t": (even - even[0]).reshape(-1, 1)}
+    return recording._replace(given=given, begins=float(even[0]))
 
 
 def _exchanged(recording: Recording) -> Recording:

@@ -95,6 +95,7 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
     "t is in us": lambda turn, _: attitude(turn, t=1e6 * T),
     "t is in minutes": lambda turn, _: attitude(turn, t=T / 60),
     "t counts frames, 200 per second": lambda turn, _: attitude(turn, t=np.rint(200 * T)),
+    "the unit of t is 1000 times": lambda turn, _: attitude(turn, t=T / 1000),
     "the clock is shifted by -0.125": lambda turn, _: attitude(turn[25:], t=T[:-25]),
     "the clock is 1.0 % fast": lambda turn, _: attitude(turn, t=1.01 * T),
 }
@@ -311,6 +312,18 @@ def test_rounded_rows_that_are_close_show_the_motion() -> None:
     assert (found.a_ratio, found.b_ratio) == pytest.approx((1.93, 0.9), rel=5e-3)
 
 
+def test_rounded_times_are_named() -> None:
+    """The times of a top that is not in the table are rounded, too: the numbers are not."""
+    t = np.linspace(0, 0.9773, 201)
+    other = TOP.replace(C=0.9 * 0.006, g=1.93 * 9.81)
+    found = []
+    for top in (TOP, other):
+        q = np.stack([*solve(top).table(t, ["quaternion"]).values()], axis=1)
+        found.append(compare(TOP, t.round(3), quaternion=q))
+    assert (found[0].cause, found[0].verdict) == ("t is rounded", "drifts")
+    assert (found[1].a_ratio, found[1].b_ratio) == pytest.approx((1.93, 0.9), rel=1e-3)
+
+
 def test_engines_are_not_tried_over_thousands_of_swings() -> None:
     t = np.linspace(0, 1000, 60)
     swinging = Top(m=1587, A=180, C=9, s=4, g=981, r0=0, theta0_deg=150)
@@ -322,6 +335,12 @@ def test_channels_are_judged_apart() -> None:
     turn, rates = run("general")
     both = compare(TOP, 1e6 * T, quaternion=wxyz(turn), rates=np.degrees(rates))
     assert both.cause == "t is in us; the rates are in degrees per unit of time"
+
+
+def test_a_clock_of_coarse_steps_is_named_before_inputs() -> None:
+    t, rows = engine_run(mistakes_of(SCENES["general"])["right"][1], 0.33 / 40, 1, 1, rk4)
+    found = compare(TOP, 1.01 * t, quaternion=rows, max_error=1e-4)
+    assert (found.cause, found.explained) == ("the clock is 1.0 % fast", "partly")
 
 
 def test_a_coarse_step_is_not_blamed_on_the_inputs() -> None:
