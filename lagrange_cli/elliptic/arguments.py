@@ -135,12 +135,13 @@ def parse_small(text: str) -> ExactComplex:
     Raises LagtopError as `parse_complex` does.
     """
     text = text.strip()
-    if not (is_decimal(text) and len(text) < 2000 and abs(float(text)) < 1e-300):
+    is_small = is_decimal(text) and len(text) < 2000 and abs(float(text)) < 1e-300
+    if not is_small or text.lstrip("+-0.")[:1] in "eE":  # a zero has any exponent
         return parse_complex(text)
     with suppress(InvalidOperation):  # of an exponent beyond those of decimals
         number = Decimal(text)
-        if not number or number.adjusted() >= _LEAST_EXPONENT:
-            return ExactComplex(Fraction(number) if number else Fraction(0))
+        if number.adjusted() >= _LEAST_EXPONENT:
+            return ExactComplex(Fraction(number))
     raise LagtopError(f"must be 0 or at least 1e{_LEAST_EXPONENT} in magnitude, got {quoted(text)}")
 
 
