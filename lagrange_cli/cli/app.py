@@ -32,7 +32,8 @@ _MODULES = {
     "stability": "bench",
 }
 """Commands that share the module of another command."""
-_WITHOUT_NUMPY = frozenset({"solve", "explain", "scenes", "jacobi", "eta"})
+_MEGABYTES = {"numpy": 100, "scipy": 120}
+"""Memory of packages with one thread of OpenBLAS, which suffices here."""
 _COMPLETION = "_LAGTOP_COMPLETE"
 _LAST_SECOND = 253_402_300_799
 
@@ -58,20 +59,24 @@ def _lack_of_memory(error: Exception) -> str:
     return f"out of memory or threads: {error}"
 
 
-def _check_memory(command: str) -> None:
-    """Raise UnavailableError if NumPy and SciPy do not fit: OpenBLAS may wait for memory for ever.
+class _MemoryCheck:
+    """Is asked for each package that is imported, before Python looks for it."""
 
-    The sizes are those of one thread of OpenBLAS, which suffices here.
-    """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    size = {"table": 100}.get(command, 0 if command in _WITHOUT_NUMPY else 220)
-    if size and os.name == "posix":
-        import mmap  # start-up
+    @staticmethod
+    def find_spec(name: str, *_: object) -> None:
+        """Raise UnavailableError if NumPy or SciPy does not fit: OpenBLAS may wait for ever."""
+        size = _MEGABYTES.get(name, 0)
+        if size and os.name == "posix":
+            import mmap  # start-up
 
-        try:
-            mmap.mmap(-1, size << 20, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS).close()
-        except OSError:
-            raise UnavailableError(f"out of memory: {command} needs {size} MB") from None
+            os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+            try:
+                mmap.mmap(-1, size << 20, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS).close()
+            except OSError:
+                raise UnavailableError(f"out of memory: {name} needs {size} MB") from None
+
+
+sys.meta_path.insert(0, _MemoryCheck)
 
 
 def complain_of_bug(error: Exception) -> None:
@@ -106,7 +111,6 @@ class LagtopGroup(click.Group):
         if cmd_name not in NAMES:
             hint = suggestion(cmd_name, [*NAMES, "--help", "--version"])
             raise click.UsageError(f"no such command: {cmd_name!r}{hint}", ctx)
-        _check_memory(cmd_name)
         module = import_module(f".{_MODULES.get(cmd_name, cmd_name)}", __package__)
         command: click.Command = getattr(module, f"{cmd_name}_command")
         return command

@@ -162,9 +162,11 @@ def test_closed_standard_input(line: str) -> None:
 
 def test_too_little_memory_for_numpy_and_scipy() -> None:
     """OpenBLAS may wait for it without end, and then no signal but SIGKILL stops the program."""
-    done = shell("ulimit -v 180000; $LAGTOP sweep")
-    said = b"Error: out of memory: sweep needs 220 MB\n"
-    assert (done.returncode, done.stdout, done.stderr) == (69, b"", said)
+    for size, name in ((90000, b"numpy needs 100"), (180000, b"scipy needs 120")):
+        done = shell(f"ulimit -v {size}; $LAGTOP sweep")
+        assert (done.returncode, done.stdout) == (69, b"")
+        assert done.stderr == b"Error: out of memory: " + name + b" MB\n"
+    assert shell("ulimit -v 90000; $LAGTOP sweep --help").returncode == 0
 
 
 def test_closed_standard_error_and_a_file(tmp_path: Path) -> None:
