@@ -9,6 +9,7 @@ Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from operator import itemgetter
@@ -79,13 +80,42 @@ FUNCTIONS: dict[str, Any] = {
     "square": square,
 }
 """The functions of formulas."""
+_FORMULAS = {
+    "u0": "cos(theta0)",
+    "momentum": "psidot0*sin(theta0)**2",  # beta - b u0 (4,7)
+    "beta_minus_b": "momentum_constant - b",
+    "beta_plus_b": "momentum_constant + b",
+    "roots_sum_a": "energy_constant + b**2",  # a (u1 + u2 + u3), by the coefficients of the cubic
+    "above_u1": "1 - u1",
+    "above_u2": "1 - u2",
+    "below_u1": "1 + u1",
+    "below_u2": "1 + u2",
+    "height": "u1 - u2",
+    "rise": "u1 - u0",
+    "fall": "u0 - u2",
+    "wide": "roots_sum_a - a*(u1 + 2*u2)",  # a (u3 - u2)
+    "narrow": "roots_sum_a - a*(2*u1 + u2)",  # a (u3 - u1)
+    "far": "wide - a*fall",  # a (u3 - u0)
+    "m_k": "a*height/wide",  # k^2 (4,19)
+}
+"""Numbers that the formulas of `keys` use, and their formulas."""
+_ZEROS: dict[str, Callable[[Facts], bool]] = {
+    "beta_minus_b": lambda facts: not facts.minus,
+    "beta_plus_b": lambda facts: not facts.plus,
+    "height": lambda facts: facts.steady,
+    "rise": lambda facts: facts.turning > 0,
+    "fall": lambda facts: facts.turning < 0,
+    "narrow": lambda facts: facts.separatrix,
+    "m_k": lambda facts: facts.steady or not facts.a,
+}
+"""Whether the facts of a motion make a number exactly 0."""
 
 
 class Numbers(dict[str, Any]):
     """The numbers of a motion by name, in balls of some digits; each is computed on first use.
 
-    A name is that of a line of `keys`, of an input, or of a property of this class.  Angles are in
-    radians.  A number that needs more digits raises TooFewDigitsError.
+    A name is that of an input, of a line of `keys`, of a formula above, or of a property.  Angles
+    are in radians.  A number that needs more digits raises TooFewDigitsError.
     """
 
     def __init__(self, facts: Facts, digits: int) -> None:
@@ -99,9 +129,10 @@ class Numbers(dict[str, Any]):
     def _value(self, name: str) -> Any:
         if name in self.facts.inputs:
             return exact(self.facts.inputs[name])
-        if name in LINES:
-            return evaluated(LINES[name].evaluated, self)
-        return getattr(self, name)
+        if name in _ZEROS and _ZEROS[name](self.facts):
+            return arb(0)
+        formula = LINES[name].evaluated if name in LINES else _FORMULAS.get(name)
+        return evaluated(formula, self) if formula else getattr(self, name)
 
     @property
     def pi(self) -> arb:
@@ -112,11 +143,6 @@ class Numbers(dict[str, Any]):
     def theta0(self) -> tuple[arb, arb]:
         """Sine and cosine of the tilt at the start, exact if they are rational."""
         return self.facts.tilt.sine_and_cosine()
-
-    @property
-    def u0(self) -> arb:
-        """The cosine of the tilt at the start."""
-        return self["theta0"][1]
 
     # inputs that are derived
 
@@ -142,16 +168,6 @@ class Numbers(dict[str, Any]):
     # the cubic f(u) = (alpha - a u)(1 - u^2) - (beta - b u)^2 (4,9); alpha is energy_constant
 
     @property
-    def beta_minus_b(self) -> arb:
-        """beta - b; exactly 0 if 1 is a root of the cubic."""
-        return self["momentum_constant"] - self["b"] if self.facts.minus else arb(0)
-
-    @property
-    def beta_plus_b(self) -> arb:
-        """beta + b; exactly 0 if -1 is a root of the cubic."""
-        return self["momentum_constant"] + self["b"] if self.facts.plus else arb(0)
-
-    @property
     def roots(self) -> tuple[arb, arb]:
         """The roots u2 and u1 of the cubic (4,9); the known ones are divided out."""
         facts, u0 = self.facts, self["u0"]
@@ -170,55 +186,6 @@ class Numbers(dict[str, Any]):
         if any(sign(upper - lower) <= 0 for lower, upper in pairwise(found)):
             raise TooFewDigitsError
         return found[0], found[1]
-
-    @property
-    def roots_sum_a(self) -> arb:
-        """a (u1 + u2 + u3), by the coefficients of the cubic."""
-        return self["energy_constant"] + square(self["b"])
-
-    @property
-    def height(self) -> arb:
-        """u1 - u2; exactly 0 if the tilt is constant."""
-        return arb(0) if self.facts.steady else self["u1"] - self["u2"]
-
-    @property
-    def rise(self) -> arb:
-        """u1 - u0; exactly 0 for a start at u1."""
-        return arb(0) if self.facts.turning > 0 else self["u1"] - self["u0"]
-
-    @property
-    def fall(self) -> arb:
-        """u0 - u2; exactly 0 for a start at u2."""
-        return arb(0) if self.facts.turning < 0 else self["u0"] - self["u2"]
-
-    @property
-    def far(self) -> arb:
-        """a (u3 - u0)."""
-        return self["wide"] - self["a"] * self["fall"]
-
-    above_u1 = property(lambda self: 1 - self["u1"])
-    above_u2 = property(lambda self: 1 - self["u2"])
-    below_u1 = property(lambda self: 1 + self["u1"])
-    below_u2 = property(lambda self: 1 + self["u2"])
-
-    @property
-    def wide(self) -> arb:
-        """a (u3 - u2)."""
-        return self["roots_sum_a"] - self["a"] * (self["u1"] + 2 * self["u2"])
-
-    @property
-    def narrow(self) -> arb:
-        """a (u3 - u1); exactly 0 on the separatrix."""
-        if self.facts.separatrix:
-            return arb(0)
-        return self["roots_sum_a"] - self["a"] * (2 * self["u1"] + self["u2"])
-
-    @property
-    def m_k(self) -> arb:
-        """k^2 (4,19); exactly 0 without nutation and without torque."""
-        if self.facts.steady or not self.facts.a:
-            return arb(0)
-        return self["a"] * self["height"] / self["wide"]
 
     @property
     def m_k_prime(self) -> arb:
@@ -250,11 +217,6 @@ class Numbers(dict[str, Any]):
             return self["r0"], arb(0)
         P, Q, double_K = self["P"], self["Q"], 2 * self["K"]
         return self["r0"] - self["b"] - (P - Q) / double_K, (P + Q) / double_K
-
-    @property
-    def momentum(self) -> arb:
-        """psi' sin^2(theta0) = beta - b u0 (4,7)."""
-        return self["psidot0"] * square(self["theta0"][0])
 
     @property
     def course(self) -> Course:
