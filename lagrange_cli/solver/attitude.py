@@ -240,12 +240,14 @@ def _sides(facts: Facts, of: Names, unit: arb) -> tuple[Side, Side]:
     (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).  After release from rest, F is K' - alpha for X and alpha
     for Y (4,31)-(4,33).
     """
-    height, wide, low = of["height"], of["wide"], 1 - of["u2"]
-    far = wide - of["a"] * low  # a (u3 - 1)
-    found = []
+    height, wide, above_u2 = of["height"], of["wide"], of["above_u2"]
+    found, a_above_u3 = [], wide - of["a"] * above_u2
     for over_pole, sign_of_momentum, sine2, cosine2, size2 in (
-        (facts.over_bottom, facts.plus, 1 + of["u2"], height, 1 + of["u1"]),
-        (facts.over_top, facts.minus, (1 - of["u1"]) * wide, height * far, low * of["k_prime"]),
+        (facts.over_bottom, facts.plus, of["below_u2"], height, of["below_u1"]),
+        (
+            *(facts.over_top, facts.minus),
+            *(of["above_u1"] * wide, height * a_above_u3, above_u2 * of["k_prime"]),
+        ),
     ):
         amplitude = arb.atan2(root(sine2), root(cosine2))
         F = acb.elliptic_f(acb(amplitude), acb(of["m_k_prime"])).real
@@ -260,8 +262,7 @@ def _since_u1(facts: Facts, of: Names) -> arb:
     """Return the periods from the nearest passage of u1 to t = 0, by (4,23) and (4,24)."""
     if facts.turning:
         return arb(1 - facts.turning) / 4
-    u0 = of["u0"]
-    sine2, cosine2 = (of["u1"] - u0) * of["wide"], (u0 - of["u2"]) * of["narrow"]
+    sine2, cosine2 = of["rise"] * of["wide"], of["fall"] * of["narrow"]
     amplitude = arb.atan2(root(sine2), root(cosine2))
     periods: arb = acb.elliptic_f(acb(amplitude), acb(of["m_k"])).real / (2 * of["K"])
     return _start_direction(facts) * periods

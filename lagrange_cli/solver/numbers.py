@@ -19,7 +19,7 @@ from flint import acb, arb, arb_poly, ctx
 
 from ..arithmetic.enclosures import TooFewDigitsError, at_precision, exact, fraction, root, sign
 from ..arithmetic.formulas import evaluated
-from ..top.derived import rates_of
+from ..top.derived import rates_of, steady_roots
 from .attitude import Course, course_of
 from .facts import Facts
 from .keys import LINES
@@ -158,12 +158,8 @@ class Numbers(dict[str, Any]):
 
     @property
     def steady_rates(self) -> tuple[arb, arb]:
-        """The slow and the fast rate w of steady precession, cos(theta0) w^2 - b w + a/2 = 0."""
-        a, b, u0 = self["a"], self["b"], self["u0"]
-        if not (self.facts.a or self.facts.spin):
-            return arb(0), arb(0)
-        q = b + (-1 if self.facts.spin < 0 else 1) * root(square(b) - 2 * a * u0)
-        return a / q, q / (2 * u0)
+        """The slow and the fast rate of steady precession at the tilt of the start."""
+        return steady_roots(self["a"], self["b"], self["u0"], self.facts.spin)
 
     # the cubic f(u) = (alpha - a u)(1 - u^2) - (beta - b u)^2 (4,9); alpha is energy_constant
 

@@ -21,6 +21,7 @@ from ..arithmetic.enclosures import (
     exact,
     root,
     settled,
+    sign,
     sign_to,
 )
 from ..arithmetic.numbers import Real
@@ -154,18 +155,22 @@ class SteadyRates(NamedTuple):
         return self.sign(self.b * self.b, -2 * self.a * self.lead) >= 0
 
     def rate(self, word: str) -> arb:
-        """Return an existing rate, at the precision in use.
+        """Return an existing rate, at the precision in use."""
+        lead = exact(self.lead) * self.tilt.sine_and_cosine()[1]
+        return steady_roots(exact(self.a), exact(self.b), lead, sign(exact(self.b)))[word == FAST]
 
-        With q = b + sgn(b) sqrt(b^2 - 2 a lead cos(tilt)) the fast rate is q/(2 lead cos(tilt)) and
-        the slow one a/q.  If b = 0 both have the same size, and the slow one is positive, as in the
-        limit of small positive b.
-        """
-        if not (self.a or self.b):
-            return arb(0)
-        a, b, lead = exact(self.a), exact(self.b), exact(self.lead) * self.tilt.sine_and_cosine()[1]
-        square_root = root(b * b - 2 * a * lead)
-        q = b - square_root if self.b < 0 else b + square_root
-        return q / (2 * lead) if word == FAST else a / q
+
+def steady_roots(a: arb, b: arb, lead: arb, sign_of_b: int) -> tuple[arb, arb]:
+    """Return the slow and the fast rate Omega, lead Omega^2 - b Omega + a/2 = 0.
+
+    With q = b + sgn(b) sqrt(b^2 - 2 a lead) the slow rate is a/q and the fast one q/(2 lead).  If b
+    = 0 both have the same size, and the slow one is positive, as in the limit of small positive b.
+    """
+    if a.is_zero() and not sign_of_b:
+        return arb(0), arb(0)
+    square_root = root(b * b - 2 * a * lead)
+    q = b - square_root if sign_of_b < 0 else b + square_root
+    return a / q, q / (2 * lead)
 
 
 def rates_of(given: Mapping[str, Any]) -> SteadyRates:
