@@ -1,12 +1,12 @@
-"""The summary of a motion in one sentence, from the numbers of its record."""
+"""The summary of a motion in one sentence."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..solver.facts import Facts
+from ..solver.solve import Motion
+from ..top.units import DEGREES, Units
 
 _ENDS = "between {least} and {most} {angle}"
 
@@ -50,14 +50,18 @@ _MOST_DIGITS = 17
 """Digits that distinguish the ends of a nutation, at most; four are enough for most tops."""
 
 
-def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str] = str) -> str:
-    """Return the summary of a whole record of a motion with these facts.
+def summary(motion: Motion, units: Units = DEGREES) -> str:
+    """Return the summary of a motion, its numbers from doubles.
 
-    `named` gives the names of units of a system.  Raises TypeError if a number is missing.
+    Raises OutOfRangeError for a number that no double holds.
     """
-    angle = "rad" if "theta_min_rad" in record else "deg"
-    low, high = (float(record[f"theta_{end}_{angle}"]) for end in ("min", "max"))
-    turns = record["mean_precession_rate"]
+    facts = motion.facts
+
+    def number(key: str) -> Any:
+        found = motion.number(units.key(key))
+        return found and found.value
+
+    low, high = number("theta_min_deg"), number("theta_max_deg")
     true = {
         "regime": facts.regime.value,
         "stable": facts.stable,
@@ -65,22 +69,22 @@ def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str]
         "turns_over": facts.plane and facts.over_top,
         "plane": facts.plane,
         "spins": bool(facts.spin),
-        "precesses": turns is None or float(turns) != 0,
-        "path": record["path"],
-        "unit": named("time"),
+        "precesses": number("mean_precession_rate") != 0,
+        "path": motion.path,
+        "unit": units.named("time"),
     }
-    numbers = {"low": low, "high": high, "spin": record["r0"], "turns": turns}
-    numbers["nutation"] = record["T_nutation"]
+    keys = {"low": "theta_min_deg", "high": "theta_max_deg", "spin": "r0"}
+    keys |= {"turns": "mean_precession_rate", "nutation": "T_nutation"}
     ends = [(_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1)]
     least, most = next(((x, y) for x, y in ends if x != y), ends[0])
-    words = {"least": least, "most": most, "angle": angle, "unit": named("time")}
+    words = {"least": least, "most": most, "angle": units.angle, "unit": units.named("time")}
 
     def part(match: re.Match[str] | str) -> str:
         name = match if isinstance(match, str) else match[1]
         if name in words:
             return words[name]
-        if name in numbers:
-            return _figures(float(numbers[name]))
+        if name in keys:
+            return _figures(number(keys[name]))
         text = next(text for when, text in PHRASES[name] if when.items() <= true.items())
         return re.sub(r"\{(\w+)\}", part, text)
 

@@ -48,11 +48,11 @@ def explain_command(top: opt.TopOptions, words: list[str], out: Output) -> None:
 
 def _table(row: Explained) -> Grid | str:
     """Return the table of a key or column; each equation of a formula has a line of its own."""
-    value = "" if row.value is None else value_text(row.value)
+    unit = "" if row.value is None or isinstance(row.value, str) else row.unit
     texts = {
         "formula": row.formula,
         "numbers": row.numbers,
-        "value": value if isinstance(row.value, str) else f"{value} {row.unit}".strip(),
+        "value": f"{value_text(row.value)} {unit}".strip(),
         "missing": row.missing,
     }
     about = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..account.summary import summary
 from ..arithmetic.text import value_text
-from ..errors import AbsentError, LagtopError, joined
+from ..errors import AbsentError, LagtopError, OutOfRangeError, joined
 from ..names import RADIUS, Key, check_names
 from ..output.destination import Output
 from ..output.document import Document, Lines, record_document
@@ -93,8 +93,8 @@ def solve_command(
         complain(f"Warning: {joined(beyond).marked}")
     more: dict[str, Any] = {}
     if wanted is None:
-        with suppress(TypeError):  # a number beyond the range of doubles is None
-            more["summary"] = summary(record, motion.facts, units.named)
+        with suppress(OutOfRangeError):  # there are no words for such a number
+            more["summary"] = summary(motion, units)
     shown: dict[str, Any] = {}
     if found.stds:
         record, shown = uncertainty.with_stds(found, motion, record, samples)

@@ -9,7 +9,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from conftest import Lagtop
+from conftest import Lagtop, Solved
 from lagtop import Motion, Top, solve
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -146,10 +146,18 @@ def test_the_formula_with_numbers_gives_the_number(name: str) -> None:
 def test_numbers_differ_in_as_many_digits_as_that_takes() -> None:
     for r0 in (1e3, 1e5, 1e7):
         motion = solve(Top(r0=r0))
-        record = motion.record()
-        low, high = re.findall(r"[\d.]+(?= and| deg)", summary(record, motion.facts))[:2]
+        low, high = re.findall(r"[\d.]+(?= and| deg)", summary(motion))[:2]
         assert float(low) == 30.0 < float(high)
-        assert float(high) == pytest.approx(record["theta_max_deg"], rel=1e-3)
+        assert float(high) == pytest.approx(motion.theta_max_deg, rel=1e-3)
+
+
+def test_the_sentence_does_not_depend_on_the_digits_of_the_record(solved: Solved) -> None:
+    near_a_pole = ("--theta0", 179.9999999, "--psidot0", 0.3)
+    sentences = {solved(*near_a_pole, *more)["summary"] for more in ((), ("--digits", 5))}
+    assert len(sentences) == 1
+    assert "nutates between 179.99999990 and 179.99999993 deg" in sentences.pop()
+    beyond = ("--g", 0, "--theta0", 30, "--r0", 1e-309, "--psidot0", 1e-310, "--digits", 20)
+    assert "summary" not in solved(*beyond)
 
 
 def test_small_differences_are_named_in_order() -> None:
@@ -162,3 +170,9 @@ def test_a_number_beyond_the_doubles_has_digits_in_solve(lagtop: Lagtop) -> None
     """`explain` itself has no --digits."""
     result = lagtop("explain", "precession_rate_elementary", "--g", 5e-324)
     assert result.stderr.endswith(" in magnitude, got 3.593e-326: use solve --digits N\n")
+
+
+def test_a_missing_number_has_no_value(lagtop: Lagtop) -> None:
+    shown = lagtop("explain", "K", "--theta0", 0).stdout
+    assert "missing  K, k: undefined" in shown
+    assert "value" not in shown

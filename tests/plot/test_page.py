@@ -70,7 +70,7 @@ def assert_that_of_solve(motion: Motion, page: dict[str, Any]) -> None:
     shown = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
     away = motion.rotation(times_of(motion)) * shown.inv()
     assert away.magnitude().max() <= LIMIT, motion.top
-    assert page["words"] == summary(motion.record(), motion.facts), motion.top
+    assert page["words"] == summary(motion), motion.top
     for key, number in page["record"].items():
         exact = getattr(motion, key)
         assert (number is None) == (exact is None), (key, motion.top)
