@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import re
+from contextlib import suppress
 
-from ..arithmetic.text import NumberText, quoted, shortened
+from ..arithmetic.text import NumberText, is_decimal, quoted, shortened
 from ..errors import DataError, LagtopError, SceneError
 from ..file_bytes import decoded, read_bytes, shown_path
 from ..names import suggestion
@@ -73,8 +74,13 @@ class SceneFile:
             at = re.search(r"at line (\d+)", str(error))
             line = self._text.split("\n")[int(at[1]) - 1] if at else ""
             hint = " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
-            if bare := re.match(r"\s*(\w+)\s*=\s*([-+\d.(][^#\"']*[^\W\d_][^#\"']*)", line):
-                hint = f' (write {bare[1]} = "{shortened(bare[2].strip())}")'
+            bare = re.match(r"\s*(\w+)\s*=\s*([-+\d.(][^#\"']*)", line)
+            if bare and is_decimal(text := bare[2].strip()):
+                hint = " (write digits on both sides of the point, and no zero in front)"
+            elif bare:
+                with suppress(LagtopError):
+                    _value(bare[1], text)
+                    hint = f' (write {bare[1]} = "{shortened(text)}")'
             wrong = str(error).split("; use sys")[0]  # advice for those who write Python
             raise SceneError(f"{self.name}: not a TOML file: {wrong}{hint}{remedy}") from None
         self.inputs: dict[str, Value] = {}
