@@ -24,7 +24,7 @@ Rules for code that uses balls:
 
 Threads: one computation runs at a time.  A host program may change the precision of Arb during it.
 A ball is true whatever the precision was, only wider, so no decision rests on a wide ball: more
-digits are taken.  A computation after which the precision is another one is repeated.  The
+digits are taken.  A computation after which the precision is another one is repeated once.  The
 precision of the host is restored afterwards, also after an exception, Ctrl-C or a fork.
 """
 
@@ -32,7 +32,6 @@ from __future__ import annotations
 
 import math
 import os
-import sys
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from decimal import ROUND_UP, Context, Decimal
@@ -62,8 +61,6 @@ _MARGIN = 32
 """Bits of a ball beyond the last place of the number that is rounded from it."""
 _TRIES = 5
 """Attempts with the most digits, because the host may disturb any of them."""
-_INTERVALS = [0.005 * 2**i for i in range(8)]
-"""Switch intervals in seconds of the repetitions if the host changes the precision."""
 
 
 class TooFewDigitsError(Exception):
@@ -80,48 +77,38 @@ class _Precision:
     own = 0
     """0 if nothing is computed."""
     host = 0
-    interval = 0.0
-    """The switch interval of the host, while another one is in use."""
 
 
 _lock = _Precision.lock
 
 
-def at_precision(digits: int, compute: Callable[[], T], *, alone: bool = False) -> T:
+def at_precision(digits: int, compute: Callable[[], T]) -> T:
     """Return `compute()`, evaluated with balls of `digits` digits.  Calls may be nested.
 
-    If another thread has changed the precision, it is evaluated again, with fewer and fewer
-    switches of threads, or with few ones from the start if it should be `alone`.
+    It is evaluated once more if another thread has changed the precision.
     """
     with _lock:
         outer = _Precision.own
         try:  # without a call before it and first in its `finally`: Ctrl-C arrives at calls
             if not outer:
                 _Precision.host = ctx.prec
-            _Precision.own = own = int(digits * BITS) + 2
-            if alone:
-                _switch_after(_INTERVALS[-1])
-            for interval in _INTERVALS:
-                ctx.prec = own
-                try:
-                    found = compute()
-                except TooFewDigitsError:
-                    if ctx.prec == own:
-                        raise
-                else:
-                    if ctx.prec == own:
-                        return found
-                _Precision.host = ctx.prec
-                _switch_after(interval)
+            ctx.prec = _Precision.own = own = int(digits * BITS) + 2
+            try:
+                found = compute()
+            except TooFewDigitsError:
+                if ctx.prec == own:
+                    raise
+            else:
+                if ctx.prec == own:
+                    return found
+            _Precision.host = ctx.prec
+            ctx.prec = own
             return compute()
         finally:
             if ctx.prec != _Precision.own:
                 _Precision.host = ctx.prec
             _Precision.own = outer
             ctx.prec = outer or _Precision.host
-            if _Precision.interval and not outer:
-                sys.setswitchinterval(_Precision.interval)
-                _Precision.interval = 0.0
 
 
 def kept(compute: Callable[[int], T]) -> Callable[[int], T]:
@@ -131,12 +118,6 @@ def kept(compute: Callable[[int], T]) -> Callable[[int], T]:
     at every attempt.
     """
     return cache(lambda digits: at_precision(digits, lambda: compute(digits)))
-
-
-def _switch_after(interval: float) -> None:
-    """Let threads switch less often, until the host's interval is restored."""
-    _Precision.interval = _Precision.interval or sys.getswitchinterval()
-    sys.setswitchinterval(max(interval, _Precision.interval))
 
 
 if hasattr(os, "register_at_fork"):  # a child of another thread has the precision of the host
@@ -217,8 +198,7 @@ def decided(
     growing = takewhile(lambda x: x < most, (least + _GUARD * 4**i for i in count()))
     for working in chain(growing, range(most, most + _TRIES)):
         with suppress(TooFewDigitsError):
-            again = partial(compute, working + lost)
-            return at_precision(working + lost, again, alone=working > most)
+            return at_precision(working + lost, partial(compute, working + lost))
     raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {most} digits")
 
 

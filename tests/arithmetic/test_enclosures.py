@@ -8,7 +8,6 @@ import os
 import random
 import re
 import signal
-import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -142,15 +141,8 @@ def test_precisions_with_too_few_digits_are_passed_over() -> None:
     assert asked == sorted(asked)
     assert [digits >= 200 for digits in asked][-2:] == [False, True]
     assert decided(lambda digits: digits, 1200, digits=90, lost=16) == 128
-    intervals = []
-
-    def open_for_ever(_: int) -> arb:
-        intervals.append(sys.getswitchinterval())
-        return between(-1, 1)
-
     with pytest.raises(LagtopError, match=r"^a sign cannot be .* with 300 digits"):
-        sign_to(open_for_ever, 300)
-    assert [x > 0.1 for x in intervals] == [False] * 3 + [True] * 4  # the last ones run alone
+        sign_to(lambda _: between(-1, 1), 300)
 
 
 def test_equal_digits_grow_with_inputs_and_output() -> None:
@@ -280,18 +272,17 @@ def test_a_disturbed_result_is_not_kept() -> None:
     assert asked == [100, 100]
 
 
-def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> None:
-    interval, intervals = sys.getswitchinterval(), []
+@pytest.mark.parametrize("is_open", [False, True])
+def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept(is_open: bool) -> None:
     with flint.ctx.workprec(77):
         seen: list[int] = []
 
         def disturbed() -> arb:
             seen.append(flint.ctx.prec)
-            intervals.append(sys.getswitchinterval())
-            if len(seen) < 3:
+            if len(seen) == 1:
                 flint.ctx.prec = 60
-            if len(seen) == 2:  # a question that is open only because of the disturbance
-                raise TooFewDigitsError
+                if is_open:  # only because of the disturbance
+                    raise TooFewDigitsError
             return arb(2).sqrt()
 
         def wished() -> None:
@@ -299,14 +290,10 @@ def test_a_disturbed_computation_is_repeated_and_the_wish_of_the_host_kept() -> 
             fails(ZeroDivisionError)
 
         found = at_precision(50, disturbed)
+        assert len(seen) == 2
         assert len(set(seen)) == 1
-        assert len(seen) == 3
         assert found.rel_accuracy_bits() > 160
         assert flint.ctx.prec == 60
-        assert intervals == sorted(intervals)
-        assert intervals[2] > interval == sys.getswitchinterval()
-        assert at_precision(50, sys.getswitchinterval, alone=True) > 100 * interval
-        assert interval == sys.getswitchinterval()
         with pytest.raises(ZeroDivisionError):
             at_precision(50, wished)
         assert flint.ctx.prec == 61
