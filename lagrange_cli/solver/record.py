@@ -153,14 +153,14 @@ def record_in_range(
         "path": lambda: motion.path,
         "remark": lambda: units.remark(remark_of(motion, units)),
     }
-    wanted = set(record_keys(units) if keys is None else keys)
+    names = record_keys(units) if keys is None else [x for x in all_keys(units) if x in keys]
     record: dict[str, Any] = {}
     found: dict[str, Rounded | None] = {}
     beyond = []
-    for name in all_keys(units):
-        if name in wanted and name in words:
+    for name in names:
+        if name in words:
             record[name] = words[name]()
-        elif name in wanted:
+        else:
             try:
                 found[name] = _number(motion, name, digits)
             except OutOfRangeError as error:

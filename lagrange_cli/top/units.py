@@ -9,7 +9,7 @@ import math
 import re
 from collections.abc import Iterable
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from ..arithmetic.enclosures import pi_to
@@ -80,6 +80,7 @@ DEGREES, RADIANS = Units(), Units(radians=True)
 """The units of documents by default, and of numbers in Python."""
 
 
+@lru_cache(1000)
 def bare_name(name: str) -> str:
     """Return the name of a key without the unit of an angle."""
     return name.removesuffix("_deg").removesuffix("_rad")
