@@ -228,11 +228,12 @@ def number_of(of: ArrayNumbers, key: str) -> tuple[Bounded, Any]:
 
 def text_of(of: ArrayNumbers, key: str) -> tuple[Any, Any]:
     """Return the texts of a key, and which of them are certain."""
-    text: Any = of.regime and of.regime.value
-    if key == "regime" and of.regime is None:
-        text = np.where(of.spin != 0, Regime.REGULAR.value, Regime.NO_SPIN.value)
-    elif key != "regime":
-        text, words = None, path_words(of, of) if key == "path" else remark_words(of)
-        for word, holds in reversed([*words]):
-            text = word if holds is True else np.where(holds, word, text)
+    words = path_words(of, of) if key == "path" else remark_words(of)
+    if key == "regime":
+        spinless = of.regime is None and of.spin == 0
+        words = iter([(Regime.NO_SPIN.value, spinless), (str(of.regime or Regime.REGULAR), True)])
+    text: Any = None
+    for word, holds in reversed([*words]):
+        shared = np.array(word, object)  # one text for all tops
+        text = shared if holds is True else np.where(holds, shared, text)
     return text, of.is_certain(key)

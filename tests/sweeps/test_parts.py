@@ -58,7 +58,7 @@ def assert_refused(result: Result, folder: Path) -> None:
     assert_one_line(result, 74, f"cannot write {folder}: it holds parts of another sweep")
 
 
-OTHERS = "--keys K,r0|--g 0|--rad|--format ndjson|--r0 1:9:8|--theta0 1,2".split("|")
+OTHERS = "--keys u1|--g 0|--rad|--format ndjson|--r0 1:9:8|--theta0 1,2".split("|")
 
 
 def test_parts_of_another_sweep_are_refused(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -143,7 +143,7 @@ def test_a_folder_without_links_is_a_folder(
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "link", refuse)
-    for options, code in (([], 0), ([], 0), (["--keys", "K"], 74)):
+    for options, code in (([], 0), ([], 0), (["--keys", "u1"], 74)):
         assert lagtop(*GRID, *options, "--parts", tmp_path).exit_code == code
     assert joined(tmp_path) == lagtop(*GRID).stdout_bytes
 
@@ -216,5 +216,5 @@ def test_a_lost_worker_leaves_parts_that_count(
         patch.setattr("lagrange_cli.sweeps.workers.in_order", lost)
         assert_one_line(lagtop(*GRID, "--parts", tmp_path), 69, said)
     assert f"Resumed: parts already in {tmp_path}: 2" in lagtop(*GRID, "--parts", tmp_path).stderr
-    other = lagtop(*GRID, "--keys", "K", "--parts", tmp_path)
+    other = lagtop(*GRID, "--keys", "u1", "--parts", tmp_path)
     assert "another sweep, with --keys r0,K; take" in other.stderr

@@ -222,8 +222,10 @@ def test_no_ordinary_top_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) ->
     rng = np.random.default_rng(2)
     start: Any = {"r0": rng.uniform(-99, 99, 2000), "theta0_deg": rng.uniform(1, 179, 2000)}
     for rates in (0.0, rng.uniform(-5, 5, 2000)):
-        found = sweep(**start, psidot0=rates, keys=[*KEYS])
+        found = sweep(**start, psidot0=rates, keys=["regime", "path", *KEYS])
         assert not np.isnan(found["stability_factor"]).any()
+        texts = [*found["regime"], *found["path"]]  # of the same object: memory
+        assert len({*map(id, texts)}) == len({*texts})
     ends = UPRIGHT * np.sin(np.radians(start["theta0_deg"]) / 2)
     for rate in (ends * (1 + 10 ** rng.uniform(-12, 1, 2000)), ends * rng.uniform(-1, 1, 2000)):
         found = sweep(**start | {"r0": 0.0}, thetadot0=rate, keys=[*KEYS])
