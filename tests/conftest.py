@@ -118,6 +118,15 @@ def process(*args: str, check: bool = True, **extra: Any) -> subprocess.Complete
     return subprocess.run([*LAGTOP, *args], capture_output=True, check=check, **extra)
 
 
+def shell(line: str, folder: Path = ROOT, **extra: str) -> subprocess.CompletedProcess[bytes]:
+    """Run a line of bash in a folder; `lagtop` is the command under test."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "PYTHONPATH": str(ROOT)} | extra
+    return subprocess.run(
+        ["bash", "-c", line], capture_output=True, check=False, cwd=folder, env=environment
+    )
+
+
 def wait_until(is_so: Callable[[], object], running: subprocess.Popen[Any]) -> None:
     """Wait until a condition holds, while a process runs."""
     while not is_so():

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import doctest
-import os
 import re
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from decimal import Decimal
@@ -15,6 +13,7 @@ from pathlib import Path
 
 import click
 import pytest
+from conftest import ROOT, shell
 from errata import figures_table
 from published import published_table
 
@@ -28,7 +27,6 @@ from lagrange_cli.recordings.quantities import QUANTITIES
 from lagrange_cli.solver.keys import FURTHER_KEYS, NUMBERS
 from lagrange_cli.top.inputs import DECLARED, TILT
 
-ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
 READMES = sorted(
     path
@@ -60,16 +58,7 @@ def sessions(text: str) -> Iterator[tuple[str, str]]:
 
 def run(command: str, folder: Path = ROOT) -> str:
     """Return what a terminal would show for a command."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        ["bash", "-c", command],
-        cwd=folder,
-        env=os.environ | {"PATH": path, "PYTHONIOENCODING": "utf-8"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        check=False,
-    )
-    return done.stdout.decode()
+    return shell(f"exec 2>&1\n{command}", folder, PYTHONIOENCODING="utf-8").stdout.decode()
 
 
 def name(path: Path) -> str:
