@@ -24,7 +24,6 @@ from lagrange_cli.cli.fit import _write as write_fits
 from lagrange_cli.cli.shared import is_scene
 from lagrange_cli.output.destination import Output
 from lagrange_cli.output.document import record_page
-from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.output.formats.table import FORMAT
 from lagrange_cli.output.report import Report
 from lagrange_cli.solver.columns import COLUMNS
@@ -230,13 +229,6 @@ def test_help_fits_a_screen_and_ends_with_examples(command: str, lagtop: Lagtop)
     examples = lines[lines.index("  Examples:") + 1 :]
     assert len(examples) >= 3
     assert all(line.startswith("    lagtop ") for line in examples)
-
-
-@pytest.mark.parametrize("command", sorted({*COMMANDS} - {"plot", "view"}))
-def test_an_unknown_format_is_refused_with_all_formats(command: str, lagtop: Lagtop) -> None:
-    named = ", ".join(map(repr, FORMATS))
-    refused = f"invalid value for '--format': 'foo' is not one of {named}: see lagtop {command}"
-    assert_one_line(lagtop(command, "--format", "foo"), 2, refused)
 
 
 def test_options_of_inputs_come_first_in_their_order(lagtop: Lagtop) -> None:

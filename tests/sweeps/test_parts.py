@@ -38,22 +38,6 @@ def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
     assert sum(len(lines) - 1 for lines in alone) == 9
 
 
-@pytest.mark.parametrize("text", ["0/3", "4/3", "1", "a/b", "-1/3", f"1/{'9' * 5000}", "\u0661/2"])
-def test_wrong_shard(text: str, lagtop: Lagtop) -> None:
-    assert_one_line(lagtop("sweep", "--shard", text), 2, "--shard must be I/N")
-
-
-def test_parts_that_cannot_be(tmp_path: Path, lagtop: Lagtop) -> None:
-    (tmp_path / "file").write_text("")
-    assert lagtop("sweep", "--parts", tmp_path / "file").exit_code == 74
-    assert lagtop("sweep", "--parts", tmp_path, "-o", "x").exit_code == 2
-    assert lagtop("sweep", "--parts", tmp_path, "--format", "json").exit_code == 2
-    assert_one_line(lagtop("sweep", "--parts", ""), 2, "--parts must name a folder")
-    for name in ("-", "/dev/null"):  # a device, as a pipe of the shell
-        tops = lagtop("sweep", name, "--parts", tmp_path / "x", input="r0\n1\n")
-        assert_one_line(tops, 2, f"--parts needs a file of tops that can be read again, got {name}")
-
-
 def assert_refused(result: Result, folder: Path) -> None:
     assert_one_line(result, 74, f"cannot write {folder}: it holds parts of another sweep")
 

@@ -126,3 +126,6 @@ def test_a_long_text_is_refused_at_once(number: str, tmp_path: Path, lagtop: Lag
         unit_of_text("*".join(["h^9"] * 1000))
     (scene := tmp_path / "a.toml").write_text(f"r0 = {number}\n")
     assert lagtop("solve", scene).exit_code == 65
+    for words in (["--jobs", number], ["--shard", f"1/{number}"]):
+        refused = lagtop("sweep", *words)
+        assert (refused.exit_code, len(refused.stderr) < 500) == (2, True)
