@@ -196,7 +196,7 @@ def test_most_hard_starts_are_computed_as_arrays(start: str, monkeypatch: Any) -
         return solve(top)
 
     monkeypatch.setattr(records, "solve", counted)
-    columns = {name: np.broadcast_to(x, 400) for name, x in given.items()}
+    columns: Any = {name: np.broadcast_to(x, 400) for name, x in given.items()}
     sweep(**columns)
     assert len(calls) < 40
     assert_trusted([{name: float(x[i]) for name, x in columns.items()} for i in range(25)], 25)
