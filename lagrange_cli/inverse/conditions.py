@@ -8,8 +8,7 @@ covariance shrinks to the directions in which it goes on to do so, as in a Kalma
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,8 +17,18 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import Message, arg
 from ..top.inputs import replaced_by
-from .known import WEIGHT, Known, compared, in_all_forms, scaled_known, time_power, whole_turns
-from .minimum import Minimum, tied
+from .known import (
+    START,
+    WEIGHT,
+    Known,
+    body_numbers,
+    body_of,
+    compared,
+    in_all_forms,
+    scaled_known,
+    time_power,
+    whole_turns,
+)
 from .problem import Ties
 
 _EXACT = 1e-5
@@ -34,8 +43,9 @@ _SELECTS = 6.0
 _VAGUE = 0.5
 """Relative standard deviation of what the recording gives for an input of the body from which the
 recording does not determine it."""
-_START = ("theta0", "thetadot0", "psidot0")
 Values = Mapping[str, Any]
+Function = Callable[[Array], Mapping[str, Array]]
+"""Numbers of some vectors by name."""
 Estimate = tuple[float, float, float]
 """A number, its standard deviation, and the one if known inputs are exact."""
 
@@ -45,23 +55,18 @@ def estimates(has: Values, v: Values, *, spins: bool) -> dict[str, Array]:
 
     `has` are the known inputs, and `spins` is true if the spin is recorded.
     """
-    found = {x: v[x] for x in _START if x in has}
-    spin = [x for x in has if replaced_by(x) == "r0"]
-    start, r0 = {"theta0": v["theta0"], "psidot0": v["psidot0"]}, v["r0"]
-    if spins:
-        found |= {x: in_all_forms(start | {"r0": r0})[x] for x in spin}
-    elif spin:
-        r0 = in_all_forms({**has, **start})["r0"]
-    whole = in_all_forms(has)
-    moment = whole["A"] if whole.has("A") else None
-    if has.keys() >= WEIGHT:
-        implied = 2 * has["m"] * has["g"] * has["s"] / v["a"]
-        forms = in_all_forms({"m": has["m"], "s": has["s"], "A": implied})
-        found |= {x: forms[x] for x in has if replaced_by(x) == "A"}
-        moment = implied if moment is None else moment
-    if "C" in has and moment is not None and (spins or spin):
-        found["C"] = v["b"] * moment / r0
-    return found
+    seen = {x: v[x] for x in (*START, *["r0"] * spins)}
+    body = body_of(has, v) | seen
+    for name in ("A", "C"):
+        others = {x: y for x, y in body.items() if x != name}
+        if name in body and (name == "C" or others.keys() >= WEIGHT):
+            found = body_numbers(v["a"] / 2, v["b"], others)
+            seen |= {name: found[name]} if name in found else {}
+    return {
+        key: in_all_forms({x: y for x, y in has.items() if x != key} | seen)[key]
+        for key in has
+        if replaced_by(key) in seen
+    }
 
 
 def ties_of(known: Known, least: Mapping[str, float] | None, *, spins: bool) -> Ties:
@@ -89,9 +94,12 @@ def ties_of(known: Known, least: Mapping[str, float] | None, *, spins: bool) -> 
 
 
 class Vector:
-    """The parameters of a motion and the uncertain known inputs, with one covariance."""
+    """The parameters of a motion and the uncertain known inputs, with one covariance.
 
-    def __init__(self, best: Minimum, known: Known) -> None:
+    The motion is a `Minimum`, or the `Means` of a steady precession.
+    """
+
+    def __init__(self, best: Any, known: Known) -> None:
         self.best, self.known = best, {x: y for x, y in known.items() if x != "steady"}
         self.uncertain = [x for x, (_, std) in self.known.items() if std]
         stds = [self.known[x][1] for x in self.uncertain]
@@ -103,38 +111,39 @@ class Vector:
         """The number of conditions that the motion obeys."""
 
     def motion(self, at: Array) -> dict[str, Array]:
-        """Return the quantities of motions, shape (tries,); r0 is known if it is not recorded."""
-        problem, has = self.best.problem, self.inputs(at)
-        found = problem.values(at[np.newaxis, :, : self.best.x.size])
-        v = {name: y[0] for name, y in found.items()}
-        if not problem.spins:
-            start = {"theta0": v["theta0"], "psidot0": v["psidot0"]}
-            whole = in_all_forms({**has, **start})
-            v["r0"] = whole["r0"] if whole.has("r0") else v["b"]
-        return v
+        """Return the quantities of motions, shape (tries,)."""
+        found: dict[str, Array] = self.best.quantities(at[:, : self.best.x.size], self.inputs(at))
+        return found
 
     def inputs(self, at: Array) -> dict[str, Array]:
         """Return the known inputs, shape (tries,)."""
         has = {x: np.full(len(at), y) for x, (y, _) in self.known.items()}
         return has | {x: at[:, self.best.x.size + i] for i, x in enumerate(self.uncertain)}
 
-    @property
-    def spin_rate(self) -> float:
-        """A known r0, 0 if it is not known."""
-        has = "r0" in {replaced_by(x) for x in self.known}
-        return float(self.motion(self.z[np.newaxis])["r0"][0]) if has else 0.0
+    def body(self, at: Array) -> dict[str, Array]:
+        """Return the inputs of the body and r0, shape (tries,), that known inputs determine."""
+        return body_of(self.inputs(at), self.motion(at))
 
     def estimates(self, at: Array) -> dict[str, Array]:
         """Return what the motion and the other known inputs give for known inputs."""
-        return estimates(self.inputs(at), self.motion(at), spins=self.best.problem.spins)
+        return estimates(self.inputs(at), self.motion(at), spins=self.best.spins)
 
-    def slopes(self, function: Callable[[Array], Mapping[str, Array]], z: Array) -> Array:
+    def off(self, names: Collection[str]) -> Function:
+        """Return the function that compares some of these with the known inputs."""
+
+        def found(at: Array) -> dict[str, Array]:
+            has = self.inputs(at)
+            return {x: y - has[x] for x, y in self.estimates(at).items() if x in names}
+
+        return found
+
+    def slopes(self, function: Function, z: Array) -> Array:
         """Return the derivatives of functions, by a share of the standard deviations."""
         steps = np.maximum(1e-2 * np.linalg.norm(self.spread, axis=1), 1e-9 * (np.abs(z) + 1e-3))
         found = _stacked(function, np.concatenate([z + np.diag(steps), z - np.diag(steps)]))
         return np.asarray((found[: z.size] - found[z.size :]).T / (2 * steps))
 
-    def numbers(self, function: Callable[[Array], Mapping[str, Array]]) -> dict[str, Estimate]:
+    def numbers(self, function: Function) -> dict[str, Estimate]:
         """Return finite functions of the vector, with standard deviations."""
         if not (names := [*function(self.z[np.newaxis])]):
             return {}
@@ -145,7 +154,7 @@ class Vector:
         found = zip(names, values.tolist(), stds.tolist(), own.tolist(), strict=True)
         return {x: (y, z, w) for x, y, z, w in found if np.isfinite([y, z, w]).all()}
 
-    def conditioned(self, function: Callable[[Array], Mapping[str, Array]]) -> None:
+    def conditioned(self, function: Function) -> None:
         """Move to the nearest vector at which functions vanish, and keep the spread along it."""
         at = self.z
         for _ in range(4):
@@ -157,7 +166,7 @@ class Vector:
         self.conditions = len(rise)
 
 
-def _stacked(function: Callable[[Array], Mapping[str, Array]], at: Array) -> Array:
+def _stacked(function: Function, at: Array) -> Array:
     return np.stack([y + np.zeros(len(at)) for y in function(at).values()], axis=-1)
 
 
@@ -177,29 +186,30 @@ class Comparison:
     """Whether a known C selects the spin."""
 
 
-def compare(best: Minimum, known: Known, scale: float, turn: float) -> Comparison:
-    """Return a minimum that was found without known inputs, with all that they say.
+def compare(best: Any, known: Known, scale: float, turn: float) -> Comparison:
+    """Return a motion that was found without known inputs, with all that they say.
 
-    Known inputs are in units of the recording, of which the unit of time of the minimum is `scale`.
+    Known inputs are in units of the recording, of which the unit of time of the motion is `scale`.
     If whole turns of the spin per row are invisible, `turn` is their rate, else 0.
     """
     vector, slowest = Vector(best, scaled_known(known, scale)), dict[str, Estimate]()
     found, given = Comparison(vector), vector.numbers(vector.estimates)
     found.free = {x: std for x, (_, std, _) in vector.numbers(vector.motion).items()}
-    if turn and best.problem.spins:
-        wanted, is_sure = _spin(vector, given, turn)
+    if turn and best.spins:
+        r0 = float(vector.motion(vector.z[np.newaxis])["r0"][0])
+        wanted, is_sure = _spin(vector, turn)
         if not is_sure:
-            del given["C"]
+            given = {x: y for x, y in given.items() if replaced_by(x) != "C"}
             unused = "known C is not used: it does not show how many turns per row the spin makes"
             found.notes.append(unused)
-        if shift := whole_turns(best.values["r0"], wanted, turn):
+        if shift := whole_turns(r0, r0 if wanted is None else wanted, turn):
             vector, slowest = Vector(best.turned(shift), vector.known), given
             found.vector, given, found.is_selected = vector, vector.numbers(vector.estimates), True
     for name, (value, std, _) in given.items():
-        if name not in _START and std > _VAGUE * abs(value):
+        if replaced_by(name) not in START and std > _VAGUE * abs(value):
             continue
         size = scale ** time_power(name)
-        other = slowest[name][0] * size if slowest else None
+        other = slowest[name][0] * size if name in slowest else None
         text = compared(name, known[name], (value * size, std * size), known, other)
         found.distances[name] = text[0]
         (found.notes if text[1] else found.contradictions).append(text[2])
@@ -207,33 +217,29 @@ def compare(best: Minimum, known: Known, scale: float, turn: float) -> Compariso
         steady = "known psidot0 = steady contradicts the recording, which nutates: omit "
         found.contradictions.append(Message(steady + arg("psidot0")))
     if given and not found.contradictions:
-
-        def off(at: Array) -> dict[str, Array]:
-            has = found.vector.inputs(at)
-            return {x: y - has[x] for x, y in found.vector.estimates(at).items() if x in given}
-
+        off = vector.off(given)
         least = {x: _HELD * std + 1e-12 for x, (_, std, _) in vector.numbers(off).items()}
-        ties = ties_of(vector.known, least, spins=best.problem.spins)
-        found.vector = Vector(tied(vector.best, ties), vector.known)
-        found.vector.conditioned(off)
+        ties = ties_of(vector.known, least, spins=best.spins)
+        found.vector = Vector(vector.best.tied(ties), vector.known)
+        found.vector.conditioned(found.vector.off(given))
     return found
 
 
-def _spin(vector: Vector, given: Mapping[str, Estimate], turn: float) -> tuple[float, bool]:
-    """Return the r0 that known inputs imply, and whether a known C selects it.
+def _spin(vector: Vector, turn: float) -> tuple[float | None, bool]:
+    """Return the r0 that known inputs imply, if any, and false if a known C cannot select it.
 
     Without a known spin, a C selects one of the spins that look alike if b is known well enough.
     """
-    v, has = vector.best.values, {x: y for x, (y, _) in vector.known.items()}
-    whole = in_all_forms({**has, "theta0": v["theta0"], "psidot0": v["psidot0"]})
-    if whole.has("r0"):
-        return float(whole["r0"]), True
-    if "C" not in given:
-        return v["r0"], True
-    (value, std, _), (known, error) = given["C"], vector.known["C"]
-    wanted = v["r0"] * value / known
-    spread, turns = math.hypot(std / value, error / known), abs(wanted) / turn
-    if turns > _MOST_TURNS:
-        return v["r0"], True
-    is_sure = turns <= 0.5 or turns * spread * _SELECTS <= 1
-    return wanted if is_sure else v["r0"], is_sure
+
+    def implied(at: Array) -> dict[str, Array]:
+        body, v = vector.body(at), vector.motion(at)
+        found = body if "r0" in body else body_numbers(v["a"] / 2, v["b"], body)
+        return {x: found[x] for x in ("r0",) if x in found}
+
+    if not (pair := vector.numbers(implied)) or "r0" in vector.body(vector.z[np.newaxis]):
+        return pair["r0"][0] if pair else None, True
+    value, std, _ = pair["r0"]
+    if abs(value) > _MOST_TURNS * turn:
+        return None, True
+    is_sure = abs(value) <= turn / 2 or std * _SELECTS <= turn
+    return value if is_sure else None, is_sure

@@ -33,6 +33,7 @@ Known = Mapping[str, tuple[float, float]]
 
 The key `steady` stands for `psidot0` if that is one of the STEADY_WORDS.
 """
+START = (TILT, "thetadot0", "psidot0")
 WEIGHT = {"m", "g", "s"}
 CONTRADICTS = 3.0
 """Standard deviations from which a known input contradicts the recording."""
@@ -63,11 +64,10 @@ def known_inputs(found: Given) -> Known:
         if not {*body} <= known.keys():
             wrong = f"{name} must be given with {' and '.join(body)}, as {equation_of(name)}"
             raise LagtopError(wrong, name)
-    plain = {x: y for x, y in known.items() if x not in FORMS or replaced_by(x) == TILT}
     whole = in_all_forms(known)
-    if whole.has("A"):
-        plain["A"] = whole["A"]
-    moment = plain.get("A", known.get("C", 1.0))
+    plain = {x: float(whole[x]) for x in (*BODY, *START[1:]) if whole.has(x)}
+    plain |= {x: y for x, y in known.items() if replaced_by(x) == TILT or x == "r0"}
+    moment = plain.get("A", plain.get("C", 1.0))
     top = Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain})
     if found.is_body:
         top.check_body()
@@ -84,6 +84,12 @@ def in_all_forms(values: Mapping[str, Any]) -> Quantities:
     constants: Any = {"pi": lambda: math.pi, "sqrt": lambda: np.sqrt}
     found = Quantities(values, u0=lambda: np.cos(found[TILT]), **constants)
     return found
+
+
+def body_of(known: Mapping[str, Any], start: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the inputs of the body and r0 that known ones determine in any form, with a start."""
+    whole = in_all_forms({**known, **{x: start[x] for x in START}})
+    return {x: whole[x] for x in (*BODY, "r0") if whole.has(x)}
 
 
 def time_power(key: str) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from .descent import descended, slopes
+from .known import body_of
 from .problem import Problem, Ties
 
 MOST_ROWS = 1000
@@ -62,9 +64,22 @@ class Minimum:
         return (chi2 + 2 * logarithms) * few.recording.t.size / one.t.size
 
     @property
+    def spins(self) -> bool:
+        """Whether the spin is recorded."""
+        return self.problem.spins
+
+    def quantities(self, at: Array, has: Mapping[str, Any]) -> dict[str, Array]:
+        """Return the quantities of motions, shape (tries,), from parameters.
+
+        If the spin is not recorded, r0 is that of known inputs, or of a body with C = A.
+        """
+        found = {name: y[0] for name, y in self.problem.values(at[np.newaxis]).items()}
+        return found if self.spins else found | {"r0": body_of(has, found).get("r0", found["b"])}
+
+    @property
     def values(self) -> dict[str, float]:
         """The quantities of the motion."""
-        found = self.problem.values(self.x[np.newaxis, np.newaxis])
+        found = self.quantities(self.x[np.newaxis], {})
         return {name: float(y.item()) for name, y in found.items()}
 
     def std(self, name: str) -> float:
@@ -87,6 +102,17 @@ class Minimum:
         x = self.x + turns * np.array([name == "r0" for name in self.problem.names])
         problem = replace(self.problem, turns=self.problem.turns + turns)
         return replace(self, problem=problem, x=x)
+
+    def tied(self, ties: Ties) -> Minimum:
+        """Return the minimum that obeys known inputs; its spread is that without them."""
+        problem = replace(self.problem, ties=ties)
+        x = self.x[np.newaxis]
+        for few in (
+            problem.thinned(MOST_ROWS),
+            *[problem] * (problem.recording.t.size > MOST_ROWS),
+        ):
+            x, _ = few.solve(x, _STEPS)
+        return replace(minimum_at(self.problem, x), is_curved=self.is_curved)
 
 
 def minimum_at(problem: Problem, x: Array) -> Minimum:
@@ -129,15 +155,6 @@ def converged(
     return shaped(found) if final else found
 
 
-def tied(found: Minimum, ties: Ties) -> Minimum:
-    """Return the minimum that obeys known inputs; its spread is that without them."""
-    problem = replace(found.problem, ties=ties)
-    x = found.x[np.newaxis]
-    for few in (problem.thinned(MOST_ROWS), *[problem] * (problem.recording.t.size > MOST_ROWS)):
-        x, _ = few.solve(x, _STEPS)
-    return replace(minimum_at(found.problem, x), is_curved=found.is_curved)
-
-
 def shaped(found: Minimum) -> Minimum:
     """Return the minimum with a spread that is as wide as chi^2 is two standard deviations away.
 
@@ -176,7 +193,7 @@ def slowest(found: Minimum, turn: float, sure: float) -> Minimum:
 
     Its b has a sign, and r0 with it, if it is `sure` standard deviations from 0.
     """
-    if not turn or not found.problem.spins or found.problem.ties:
+    if not turn or not found.spins or found.problem.ties:
         return found
     v, std = found.values, found.std("b")
     rates = v["r0"] + turn * np.arange(-3, 4)

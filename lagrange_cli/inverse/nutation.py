@@ -15,7 +15,7 @@ from ..sweeps.records import sweep
 from ..top.inputs import all_replaced
 from ..top.units import Units
 from .conditions import Comparison, Vector
-from .known import CONTRADICTS, WEIGHT, Known, body_numbers, in_all_forms, time_power
+from .known import CONTRADICTS, WEIGHT, Known, body_numbers, time_power
 from .measured import Measured
 from .outcome import PERCENT, Number, Outcome
 from .reasons import Kind, Reason
@@ -93,9 +93,8 @@ def nutating_outcome(
     notes = [*assumed, *[_wish(products)] * bool(products), *_too_small(pairs, vector.known)]
     if recording.angles.keys() == {"theta"} and vector.known.get("psidot0") == (0, 0):
         notes.append("the sign of b is not determined: theta alone does not show the direction")
-    values = {x: y[0] for x, y in pairs.items()}
-    inputs, arbitrary = _inputs(found, values, is_spin_known=is_spin_known)
-    arbitrary |= hidden & {"thetadot0", "psidot0"} - vector.known.keys()
+    inputs, arbitrary = _inputs(found, is_spin_known=is_spin_known)
+    arbitrary |= hidden & {"thetadot0", "psidot0"} - all_replaced(vector.known)
     return Outcome(
         recording=recording,
         in_radians=numbers,
@@ -152,8 +151,8 @@ def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:
             "deviations"
         )
         faults.append(Reason(Kind.OPEN, hardly))
-    spins = best.problem.spins
-    r0 = values["r0"] if spins else found.vector.spin_rate
+    spins, here = best.spins, found.vector.z[np.newaxis]
+    r0 = values["r0"] if spins else float(found.vector.body(here).get("r0", np.zeros(1))[0])
     if r0 and not best.unknown:
         ratio, std = values["b"] / r0, best.std("b") / abs(r0)
         is_free = spins and is_even
@@ -165,21 +164,20 @@ def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:
 
 def _computed(vector: Vector, at: Array, *, is_spin_known: bool) -> dict[str, Array]:
     """Return the numbers of the motion and of the body for many vectors, start in radians."""
-    v, has, problem = vector.motion(at), vector.inputs(at), vector.best.problem
-    spins, seen = problem.spins, problem.recording.angles
-    names = [x for x in _MEANINGS if x != "r0" or spins]
-    found = {x: v[x] for x in names if x not in {"phi_zero", "psi_zero"} or x[:3] in seen}
+    v, has, body, seen = vector.motion(at), vector.inputs(at), vector.body(at), vector.best.spins
+    angles = vector.best.problem.recording.angles
+    names = [x for x in _MEANINGS if x != "r0" or seen]
+    found = {x: v[x] for x in names if x not in {"phi_zero", "psi_zero"} or x[:3] in angles}
     found |= {x: has[x] for x in vector.uncertain}
-    whole = in_all_forms(has)
-    body = {**has} | ({"A": whole["A"]} if whole.has("A") else {})
-    has_spin = (spins or "r0" in all_replaced(has)) and is_spin_known
-    found |= body_numbers(v["a"] / 2, v["b"], body | ({"r0": v["r0"]} if has_spin else {}))
+    has_spin = (seen or "r0" in body) and is_spin_known
+    body = {x: y for x, y in body.items() if x != "r0"} | ({"r0": v["r0"]} if has_spin else {})
+    found |= body_numbers(v["a"] / 2, v["b"], body)
     start: dict[str, Any] = {"theta0_rad": v["theta0"]}
     start |= {x: v[x] for x in ("thetadot0", "psidot0")}
     swept = sweep(keys=_DERIVED, radians=True, m=1, A=1, C=1, s=1, g=v["a"] / 2, r0=v["b"], **start)
     derived = {key: np.asarray(swept[key], float) for key in _DERIVED}
     derived["mean_spin_rate"] = derived["mean_spin_rate"] + v["r0"] - v["b"]
-    if not has_spin and not spins:
+    if not has_spin and not seen:
         del derived["mean_spin_rate"]
     for key, exact in _ELEMENTARY.items():
         derived[f"{key}{PERCENT}"] = 100 * (derived[key] / derived[exact] - 1)
@@ -201,38 +199,39 @@ def _meaning(name: str, known: Known, pairs: Mapping[str, tuple[float, ...]]) ->
     )
 
 
-def _inputs(
-    compared: Comparison, numbers: Mapping[str, float], *, is_spin_known: bool
-) -> tuple[dict[str, float], set[str]]:
+@np.errstate(all="ignore")
+def _inputs(found: Comparison, *, is_spin_known: bool) -> tuple[dict[str, float], set[str]]:
     """Return inputs of `Top` with this motion, and which of the body's are arbitrary.
 
     Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.  If known
     inputs contradict the motion, its a and b determine A and C.
     """
-    vector = compared.vector
-    v = {name: float(x[0]) for name, x in vector.motion(vector.z[np.newaxis]).items()}
-    given = {name: float(x[0]) for name, x in vector.inputs(vector.z[np.newaxis]).items()}
-    body, whole = ("m", "s", "g", "A", "C", "r0"), in_all_forms(given)
-    has: dict[str, float] = {x: given[x] for x in body if x in given}
-    has |= {"A": whole["A"]} if whole.has("A") else {}
-    has |= {x: numbers[x] for x in body if x in numbers and (x != "r0" or is_spin_known)}
-    is_spin_seen = vector.best.problem.spins or "r0" in all_replaced(given)
-    has |= {"r0": v["r0"]} if is_spin_seen and is_spin_known else {}
-    if compared.contradictions and has.keys() >= WEIGHT:
-        has["A"] = 2 * has["m"] * has["g"] * has["s"] / v["a"]
-    arbitrary = {*body} - has.keys()
-    moment = has.setdefault("A", has.get("C", 1.0))  # with C and r0, A is a number of the fit
-    ratio = v["b"] / v["r0"] if "r0" in has else 1.0
-    if compared.contradictions and has.keys() >= {"C", "r0"}:
-        has["C"] = ratio * moment
-    has["r0"] = v["b"] * moment / has.setdefault("C", ratio * moment)
-    weight = v["a"] / 2 * moment  # mgs
-    share = min(0.1, max(1 - has["C"] / (2 * moment), 1e-3) / 2)
-    unknown = [x for x in ("g", "s", "m") if x not in has]
-    for name in unknown[:-1]:
-        has[name] = 1.0 if name == "g" else share * moment * has["g"] / weight
-    for name in unknown[-1:]:
-        has[name] = weight / math.prod(has[x] for x in ("m", "g", "s") if x != name)
-    start = {"theta0_deg": math.degrees(v["theta0"])}
-    start |= {x: v[x] for x in ("thetadot0", "psidot0")}
-    return {x: has[x] for x in body} | start, arbitrary
+    vector, here = found.vector, found.vector.z[np.newaxis]
+    v, has = ({x: y[0] for x, y in f(here).items()} for f in (vector.motion, vector.body))
+    if vector.best.spins:
+        has["r0"] = v["r0"]
+    wrong = {"r0"} if not is_spin_known else set()
+    if found.contradictions:
+        wrong |= {"A"} if has.keys() >= WEIGHT else set()
+        wrong |= {"C"} if {"r0"} <= has.keys() - wrong else set()
+    has = {x: y for x, y in has.items() if x not in wrong}
+    names = ("m", "s", "g", "A", "C", "r0")
+
+    def complete() -> None:
+        """Add what follows from a, b and the others."""
+        follow = body_numbers(v["a"] / 2, v["b"], has).items()
+        has.update({x: y for x, y in follow if x in names and np.isfinite(y)})
+
+    complete()
+    arbitrary = {*names} - has.keys()
+    has.setdefault("A", has.get("C", 1.0))
+    complete()
+    has["r0"] = v["b"] * has["A"] / has.setdefault("C", has["A"])
+    share = min(0.1, max(1 - has["C"] / (2 * has["A"]), 1e-3) / 2)
+    has.setdefault("g", 1.0)
+    complete()
+    has.setdefault("s", 2 * share * has["g"] / v["a"])
+    complete()
+    inputs = {x: has[x] for x in names} | {"theta0_deg": math.degrees(v["theta0"])}
+    inputs |= {x: v[x] for x in ("thetadot0", "psidot0")}
+    return {x: float(y) for x, y in inputs.items()}, arbitrary

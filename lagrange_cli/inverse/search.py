@@ -22,7 +22,7 @@ from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .conditions import Comparison, compare, ties_of
-from .known import Known, scaled_known, time_power
+from .known import START, Known, in_all_forms, scaled_known, time_power
 from .measured import LEAST_ROWS, Measured
 from .minimum import MOST_ROWS, Minimum, converged, largest, minimum_at, slowest
 from .nutation import nutating_outcome
@@ -79,7 +79,7 @@ def best_fit(
     Raises DataError for a recording that cannot be fitted.
     """
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
-        if recording.angles.keys() == {alone} and needed not in known:
+        if recording.angles.keys() == {alone} and needed not in all_replaced(known):
             when = ", 0 if the top is released from rest" * (alone == "theta")
             used = ", ".join(recording.source.source.used)
             shown = f"{alone} alone{f' (from {used})' * bool(used)}"
@@ -160,12 +160,14 @@ def _nutation(
     scale, is_alone = 1 / frequency, len(recording.angles) == 1
     scaled = replace(recording, t=recording.t / scale)
     inputs, turn = scaled_known(known, scale), 2 * math.pi / scaled.frame if scaled.is_even else 0.0
+    whole = in_all_forms({x: y for x, (y, _) in inputs.items()})
+    start = {x: whole[x] for x in START if whole.has(x)}
+    start |= {"r0": whole["r0"]} if "r0" in whole else {}
     floors = np.array([noise[x][0] / math.sqrt(12) + ROUNDING for x in recording.channels])
     ways = [scaled, scaled.mirrored][: 1 + both]
     for is_tied in [True] if is_alone else [False, True][: 1 + bool(inputs)]:
         ties = ties_of(inputs, None, spins="phi" in recording.angles) if is_tied else None
-        fixed = {x: y for x, (y, _) in inputs.items() if is_tied}
-        minima = _minima(ways, floors, fixed, ties)
+        minima = _minima(ways, floors, start if is_tied else {}, ties)
         best, rival, image = _chosen(minima, turn)
         if best is None:
             return None
@@ -185,7 +187,7 @@ def _nutation(
     best = found.vector.best
     if is_tied:
         found.vector.known = {x: y for x, y in inputs.items() if x != "steady"}
-    turns = abs(best.values["r0"]) / turn if turn and best.problem.spins else 0.0
+    turns = abs(best.values["r0"]) / turn if turn and best.spins else 0.0
     is_sure = abs(best.values["b"]) > _SURE * best.std("b")
     seen = "phi" in recording.angles and "r0" not in all_replaced(known)
     ratio, error = (x / (best.values["r0"] or math.inf) for x in (best.values["b"], best.std("b")))
@@ -302,7 +304,7 @@ def _chosen(
 
 def _shown(rival: Minimum, scale: float) -> str:
     """Return the numbers of another top in the units of the recording."""
-    names = ["a", "b", *["r0"] * rival.problem.spins]
+    names = ["a", "b", *["r0"] * rival.spins]
     return ", ".join(f"{x} = {rival.values[x] * scale ** time_power(x):.6g}" for x in names)
 
 

@@ -96,7 +96,7 @@ def test_a_form_is_a_known_input_of_a_fit(key: str) -> None:
     inputs, t = in_form(TOP, key), np.linspace(0, 1, 60)
     noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, 60))
     theta, phi, psi = solve(TOP).angles(t) + noise
-    names = ("m", "g", "s", key) if replaced_by(key) == "A" else (key,)
+    names = {"A": ("m", "g", "s", key), "C": ("m", "A", key)}.get(replaced_by(key), (key,))
     known = {x: inputs[x] for x in names}
     right = fit(t, theta=theta, phi=phi, psi=psi, known=known)
     assert right.verdict == "good"
@@ -119,28 +119,42 @@ ROW = """spin_frequency | f_φ0 | spin frequency at the start
     | phidot0 | 2*pi*spin_frequency | phidot0/(2*pi)
 gyradius | k_A | equatorial radius of gyration
     | radius of gyration about the pivot | positive | len | | A | m*gyradius*gyradius | sqrt(A/m)
+k_C | k_C | polar radius of gyration
+    | radius of gyration about the axis | positive | len | | C | m*k_C*k_C | sqrt(C/m)
+turn_period | T_ψ0 | precession period at the start
+    | time of one turn at the start | not 0 | time | | psidot0 | 2*pi/turn_period | 2*pi/psidot0
 """
-FIELD = "    spin_frequency: Real | None = None\n    gyradius: Real | None = None\n"
+FIELD = "".join(
+    f"    {key}: Real | None = None\n"
+    for key in ("spin_frequency", "gyradius", "k_C", "turn_period")
+)
 
 
 @pytest.mark.slow
 def test_a_further_form_is_one_row_and_one_field(tmp_path: Path) -> None:
-    """The tests of all forms pass in a copy of the package with two more."""
+    """The tests of all forms pass in a copy of the package with four more."""
     package = shutil.copytree(ROOT / "lagrange_cli", tmp_path / "lagrange_cli")
     (tmp_path / "sample_inputs").mkdir()
     for name, place, more in (("inputs", "theta0 |", ROW), ("top", "    _given: dict", FIELD)):
         text = (file := package / "top" / f"{name}.py").read_text(encoding="utf-8")
         file.write_text(text.replace(place, more + place, 1), encoding="utf-8")
+    chosen = "spin_frequency or gyradius or every_form or (of_a_fit and (k_C or turn_period))"
     line = ["pytest", "-q", "-p", "no:cacheprovider", f"--rootdir={ROOT / 'tests'}", __file__]
     ran = subprocess.run(
-        [sys.executable, "-m", *line, "-k", "spin_frequency or gyradius or every_form"],
+        [
+            sys.executable,
+            "-m",
+            *line,
+            "-k",
+            chosen,
+        ],
         cwd=tmp_path,
         env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert "9 passed" in ran.stdout, ran.stdout
+    assert "11 passed" in ran.stdout, ran.stdout
 
 
 def test_a_period_is_exact_to_the_digits(lagtop: Lagtop) -> None:
