@@ -188,8 +188,3 @@ def _times(ratio: float) -> str:
 def _plain(x: float) -> str:
     """Return a factor in three digits, and up to a million without an exponent."""
     return f"{x:.3g}" if not 1000 <= x < 1e6 else f"{x:.0f}"
-
-
-def whole_turns(rate: float, wanted: float, turn: float) -> float:
-    """Return the whole turns per row that bring a rate next to a wanted one."""
-    return turn * round((wanted - rate) / turn) if turn else 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,6 +13,7 @@ from ..arithmetic.types import Array
 from .descent import descended, slopes
 from .known import body_of
 from .problem import Problem, Ties
+from .spins import slowest_rate
 
 MOST_ROWS = 1000
 """Rows of the fit that finds a minimum; its last steps use all rows."""
@@ -196,12 +198,8 @@ def slowest(found: Minimum, turn: float, sure: float) -> Minimum:
     if not turn or not found.spins or found.problem.ties:
         return found
     v, std = found.values, found.std("b")
-    rates = v["r0"] + turn * np.arange(-3, 4)
-    if abs(v["b"]) > sure * std:
-        low, high = (v["b"] - 2 * np.copysign(std, v["b"])) / rates, v["b"] / rates
-        rates = rates[(high > 0) & (low <= 2)]
-    rate = float(rates[np.argmin(np.abs(rates))]) if rates.size else v["r0"]
-    return found.turned(rate - v["r0"]) if rate != v["r0"] else found
+    rate = slowest_rate(v["r0"], turn, v["b"] if abs(v["b"]) > sure * std else 0.0, std)
+    return found.turned(rate - v["r0"]) if rate not in {v["r0"], math.inf} else found
 
 
 def largest(problem: Problem, x: Array) -> Any:

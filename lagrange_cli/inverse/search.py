@@ -39,6 +39,7 @@ from .signals import (
     signals_in,
     step_between,
 )
+from .spins import FASTER, HALF, reversed_note
 from .starts import best_starts, distinct
 from .steady import steady_outcome
 
@@ -56,8 +57,6 @@ _LIKELY = 16.0
 """Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
 _SURE = 2.0
 """Standard deviations from which b has a sign, and r0 with it."""
-_FASTER = 3.0
-"""Ratio of spin rates from which the slower one tells the direction of psi."""
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
 _Noise = Mapping[str, Noise]
@@ -201,12 +200,12 @@ def _nutation(
         replace(best.problem.recording, t=recording.t),
         scale,
         noise=noise,
-        is_spin_known=not seen or (is_sure and turns < 0.5),
+        is_spin_known=not seen or (is_sure and turns < HALF),
         is_even=bool(turn),
         rival=_shown(rival, scale) if rival else "",
         known=known,
         assumed=_assumed(found, faster, turns if seen else 0.0, turn / scale),
-        is_spin_slow=not seen or turns < 1 / (1 + _FASTER),
+        is_spin_slow=not seen or turns < 1 / (1 + FASTER),
         **asked,
     )
 
@@ -293,12 +292,12 @@ def _chosen(
     likely = [slow[i] for i in order]
     ways = [[x for x in likely if x.problem.recording.is_mirrored is way] for way in (False, True)]
     plain, turned = (abs(x[0].values["r0"]) if x else math.inf for x in ways)
-    if turned * _FASTER < plain:
+    if turned * FASTER < plain:
         ways.reverse()
     best, image = (x[0] if x else None for x in ways)
     slow_spin = min(plain, turned)
-    is_open = 2 * (1 + _FASTER) * slow_spin >= turn
-    others = [x for x in ways[1] if is_open or abs(x.values["r0"]) < _FASTER * slow_spin]
+    is_open = 2 * (1 + FASTER) * slow_spin >= turn
+    others = [x for x in ways[1] if is_open or abs(x.values["r0"]) < FASTER * slow_spin]
     return best, next((x for x in ways[0] + others if best and x.differs(best)), None), image
 
 
@@ -315,14 +314,12 @@ def _assumed(found: Comparison, faster: float, turns: float, turn: float) -> lis
     """
     notes = []
     if found.vector.best.problem.recording.is_mirrored:
-        note = "psi counts in the other direction: its sign was changed"
-        other = f" (else the spin makes {faster:.2g} turns per row or more)"
-        notes.append(note + other * bool(faster))
-    elif faster and turns > 1 / (1 + _FASTER):
+        notes.append(reversed_note(faster))
+    elif faster and turns > 1 / (1 + FASTER):
         notes.append(
             f"psi may count in the other direction, if the spin makes {faster:.2g} turns per row"
         )
-    if turns > 0.5:
+    if turns > HALF:
         how = "rate that C selects" if found.is_selected else "slowest possible rate"
         notes.append(
             "the spin exceeds half a turn per row: r0 is known only up to multiples of "

@@ -8,8 +8,8 @@ x = A Omega cos(theta)/(C r0), whose sign is known, and whose size depends on C/
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,20 +19,27 @@ from ..errors import Message, arg
 from ..top.inputs import TILT, all_replaced, replaced_by
 from ..top.units import bare_name
 from .checks import CHANCE, Noise, Residuals
-from .known import WEIGHT, Known, compared, in_all_forms, whole_turns
+from .conditions import Vector, compare
+from .known import START, WEIGHT, Known, body_of
 from .measured import Measured
 from .outcome import Number, Outcome
+from .problem import Ties
 from .reasons import Kind, Reason
 from .signals import Signal
+from .spins import FASTER, reversed_note, slowest_rate
 
 _MOST_TILT, _LEAST_ROWS = 0.04, 30
 """Largest scatter of the tilt in radians that counts as noise, and the least number of rows that
 shows a nutation, if sigma is not given."""
-_RATIOS, _MOST_BIAS = (0.05, 2.0), 0.8
-"""C/A in the bounds of the neglected term if it is not known, and the largest such term."""
-_SURE, _QUARTER = 4.0, 0.25
-"""Standard deviations of a rate that is not 0, and turns per row below which the spin shows the
-direction of psi."""
+_LEAST, _MOST = 0.05, 2.0
+"""Bounds of C/A if it is not known."""
+_MOST_BIAS = 0.8
+"""Largest share of the neglected term with which b/a is determined."""
+_UNIFORM = 1.75
+"""Half of a range over the standard deviation of a number in it."""
+_SURE = 4.0
+"""Standard deviations of a rate that is not 0."""
+_Pair = tuple[float, float]
 _MEANINGS = {
     "mean_tilt": "mean tilt",
     "mean_precession_rate": "mean precession rate",
@@ -40,9 +47,6 @@ _MEANINGS = {
     "r0": "total spin rate, from the means",
     "b/a": "C r0/2mgs",
 }
-_SMALL = 1e-3
-"""Steps of differences in standard deviations."""
-_Pair = tuple[float, float]
 
 
 class _Mean(NamedTuple):
@@ -54,6 +58,47 @@ class _Mean(NamedTuple):
 
 
 _NONE = _Mean(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Means:
+    """A steady precession whose parameters are its tilt, psi', phi' and the factor 1/(1 - x).
+
+    The factor is that of b/a by the neglected term.  It counts if known inputs do not give C/A; b
+    and a have no meaning then but their ratio.
+    """
+
+    x: Array
+    spread: Array
+    spins: bool
+    turns: float
+    """Whole turns per row, as a rate, that r0 exceeds the visible rate by."""
+
+    def quantities(self, at: Array, has: Mapping[str, Any]) -> dict[str, Array]:
+        """Return the quantities of motions, shape (tries,); a is NaN if known inputs give it."""
+        tilt, turn, spin, factor = at.T
+        along = turn * np.cos(tilt)
+        v = {TILT: tilt, "thetadot0": 0 * tilt, "psidot0": turn}
+        body = body_of(has, v)
+        r0 = spin + along + self.turns if self.spins else body.get("r0", along)
+        with np.errstate(all="ignore"):
+            if "A" in body and body.keys() >= WEIGHT:
+                b = body["m"] * body["g"] * body["s"] / body["A"] / turn + along
+                a = np.nan * b
+            elif {"A", "C"} <= body.keys():
+                b = r0 * body["C"] / body["A"]
+                a = 2 * turn * (b - along)
+            else:
+                b, a = r0, 2 * turn * r0 / factor
+        return v | {"a": a, "b": b, "r0": r0}
+
+    def turned(self, turns: float) -> Means:
+        """Return the same with a spin that is faster by whole turns per row."""
+        return replace(self, turns=self.turns + turns)
+
+    def tied(self, _: Ties) -> Means:
+        """Return the same: no further fit is needed to obey known inputs."""
+        return self
 
 
 def _mean(
@@ -98,50 +143,57 @@ def steady_outcome(
         x: _mean(y, x, recording, noise.get(x, Noise()).step, sigma.get(x) or sigma.get(alias[x]))
         for x, y in signals.items()
     }
-    tilt = means.get("theta") or (_Mean(*known["theta0"], 0.0) if "theta0" in known else None)
+    tilt = means.get("theta") or (_Mean(*known[TILT], 0.0) if TILT in known else None)
     notes = ["no nutation is visible: the numbers are means over the recording"]
-    is_sure, whole = "r0" in all_replaced(known), 0.0
-    if "phi" in means and tilt:
-        recording, means, whole, is_slow = _direction(recording, means, tilt, notes)
-        is_sure |= is_slow
-    elif "phi" in means:
+    more, is_sure, seen = 0.0, True, "phi" in means
+    turn = 2 * math.pi / recording.frame if recording.is_even and seen else 0.0
+    if seen and tilt:
+        recording, means, more, is_sure = _direction(recording, means, tilt.value, turn, notes)
+    elif seen:
         unknown = "without the tilt, neither r0 nor C is determined"
-        notes.append(Message(f"{unknown}: give {arg('theta0')}"))
-    numbers: dict[str, Number] = {}
-    for name, key in (
-        ("theta", "mean_tilt_rad"),
-        ("psi", "mean_precession_rate"),
-        ("phi", "mean_spin_rate"),
-    ):
-        if name in means:
-            value, std = means[name][:2]
-            numbers[key] = Number(value, std, _MEANINGS[bare_name(key)], std)
-    turn, spin = (means.get(x, _NONE) for x in ("psi", "phi"))
-    derived = dict[str, _Pair]()
-    if tilt and ("phi" in means or is_sure):
-        given = {**known, **{x: y[:2] for x, y in means.items()}, "theta": tilt[:2]}
-        derived = _derived(given, whole, notes, is_sure=is_sure)
-    reasons, distances = list[Reason](), dict[str, float]()
-    seen, slowest = dict[str, _Pair](), dict[str, _Pair]()
-    if tilt and "phi" in means:
-        at = {TILT: tilt[:2], "psidot0": turn[:2], "phi": spin[:2]}
-        visible = 2 * math.pi / recording.frame if recording.is_even else 0.0
-        seen, slowest = (_spins(known, at, x) for x in (visible, 0.0))
-    for key, pair in (derived | seen).items():
-        if key in seen or (key == "C" and key in known):
-            distances[key], agrees, text = compared(
-                key, known[key], pair, known, slowest.get(key, (None,))[0]
-            )
-            if agrees:
-                notes.append(text)
-            else:
-                reasons.append(Reason(Kind.KNOWN, text))
-        elif key not in known:
-            meaning = _MEANINGS.get(key, "from the mean rates")
-            numbers[key] = Number(*pair, meaning, pair[1])
+        notes.append(Message(f"{unknown}: give {arg(TILT)}"))
+    body = {x: y for x, y in known.items() if replaced_by(x) not in {*START, "steady"}}
+    is_known = "r0" in all_replaced(body)
+    each = [tilt or _NONE, *(means.get(x, _NONE) for x in ("psi", "phi"))]
+    is_sure |= is_known
+    is_derived = bool(tilt) and (seen or is_known)
+    x, stds = (np.array([y[i] for y in each] + [1 - i]) for i in (0, 1))
+    best = Means(x, np.diag(stds), seen and bool(tilt), more)
+    factor = _factor(Vector(best, body), notes, is_sure=is_sure) if is_derived else None
+    if factor:
+        best.x[3], best.spread[3, 3] = factor
+    found = compare(best, body, 1.0, turn)
+    is_sure |= found.is_selected
+    if tilt and turn:
+        notes.append(
+            f"r0 is known only up to whole turns per row, multiples of {turn:.6g}"
+            + "; C and the sign of r0 do not follow" * (not is_sure)
+        )
+
+    def computed(at: Array) -> dict[str, Array]:
+        """Return the numbers of the fit."""
+        v, has = found.vector.motion(at), found.vector.body(at)
+        keys = {"theta": "mean_tilt_rad", "psi": "mean_precession_rate", "phi": "mean_spin_rate"}
+        numbers = {y: at[:, i] for i, (x, y) in enumerate(keys.items()) if x in means}
+        numbers |= {"r0": v["r0"]} if is_derived and not is_known else {}
+        if factor:
+            weight = 2 * math.prod(has[x] for x in "msg" if x in has)
+            unknown = [x for x in "msg" if x not in has]
+            over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
+            is_exact = "A" in has and not unknown
+            numbers["b/a"] = v["b"] / (weight / has["A"] if is_exact else v["a"])
+            product = numbers["b/a"] * weight / (v["r0"] if is_sure else 1)
+            numbers[f"C{over}" if is_sure else f"C*r0{over}"] = product
+        return {x: y for x, y in numbers.items() if x not in all_replaced(known)}
+
+    numbers = {
+        key: Number(value, std, _MEANINGS.get(bare_name(key), "from the mean rates"), own)
+        for key, (value, std, own) in found.vector.numbers(computed).items()
+    }
+    spin, turned = (means.get(x, _NONE) for x in ("phi", "psi"))
 
     def motion(t: Array) -> Array:
-        lines = [x.start + x.value * t for x in (spin, turn)]
+        lines = [x.start + x.value * t for x in (spin, turned)]
         return np.stack([np.full(t.shape, tilt.value if tilt else math.pi / 2), *lines])
 
     result = Outcome(
@@ -152,139 +204,67 @@ def steady_outcome(
         parameters=2 * len(means) - ("theta" in means),
         frequency=1 / float(recording.t[-1]),
         noise=noise,
-        notes=notes,
-        distances=distances,
+        notes=notes + found.notes,
+        distances=found.distances,
         **others,
     )
-    r0 = 0.0 if reasons else derived.get("r0", _NONE[:2])[0]  # a wrong one has any sign
-    reasons += _faults(recording, turn, r0, result, frequency)
+    reasons = [Reason(Kind.KNOWN, x) for x in found.contradictions]
+    r0 = float(found.vector.motion(found.vector.z[np.newaxis])["r0"][0])
+    r0 = 0.0 if reasons or not is_derived else r0  # a wrong one has any sign
+    reasons += _faults(recording, turned, r0, result, frequency)
     return replace(result, reasons=reasons)
 
 
+def _factor(vector: Vector, notes: list[str], *, is_sure: bool) -> _Pair | None:
+    """Return 1/(1 - x) and its standard deviation, None if b/a is not determined."""
+    here = vector.z[np.newaxis]
+    v, body = ({x: float(y[0]) for x, y in f(here).items()} for f in (vector.motion, vector.body))
+    r0, along = v["r0"], v["psidot0"] * math.cos(v[TILT])
+    if not v["psidot0"] or not r0:
+        return None
+    if "A" in body and ("C" in body or body.keys() >= WEIGHT):
+        return 1.0, 0.0
+    if not is_sure:  # psi may count in the other direction, or the spin be faster
+        r0 = math.copysign(min(abs(r0), abs(r0 - 2 * along)), r0)
+    shares = [along / (r0 * _LEAST), along / (r0 * _MOST) * is_sure]
+    if max(shares) > _MOST_BIAS:
+        notes.append("b/a is not determined: A Omega cos(theta) may be as large as C r0")
+        return None
+    low, high = sorted(1 / (1 - x) for x in shares)
+    if low != high:
+        notes.append(
+            f"b/a and C r0 include A Omega cos(theta) = {100 * min(shares):.2g} to "
+            f"{100 * max(shares):.2g} % of C r0, for C/A from {_MOST:g} to {_LEAST:g}: known A, m, "
+            "g and s make them exact"
+        )
+    return (low + high) / 2, (high - low) / 2 / _UNIFORM
+
+
 def _direction(
-    recording: Measured, means: dict[str, _Mean], tilt: _Mean, notes: list[str]
+    recording: Measured, means: dict[str, _Mean], tilt: float, turn: float, notes: list[str]
 ) -> tuple[Measured, dict[str, _Mean], float, bool]:
     """Return recording and means with psi in the direction of the spin, the whole turns per row
     that r0 exceeds its visible rate by, and if the direction is sure.
 
-    Whole turns per row are invisible.  If psi' and r0 have opposite signs, either psi counts in the
-    other direction, if the spin is slow, or the spin is faster.
+    If psi' and r0 have opposite signs, either psi counts in the other direction, or the spin is
+    faster.
     """
-    turn, spin = means.get("psi", _NONE), means["phi"]
-    whole, more = 2 * math.pi / recording.frame if recording.is_even else 0.0, 0.0
-    along = turn.value * math.cos(tilt.value)
-    rate, slow = spin.value + along, abs(spin.value - along) * recording.frame / (2 * math.pi)
-    is_backwards = turn.value * rate < 0 < turn.value * (along - spin.value)  # C/A < 0
-    if recording.kind == "angles" and is_backwards and (slow < _QUARTER or not whole):
-        recording, rate = recording.mirrored, spin.value - along
-        turn = _Mean(-turn.value, turn.std, -turn.start)
-        means = means | {"psi": turn}
-        assumed = f" (else the spin makes {1 - slow:.2g} turns per row or more)" * bool(whole)
-        notes.append(f"psi counts in the other direction: its sign was changed{assumed}")
-    elif is_backwards and whole:
-        more = math.copysign(whole, turn.value)
-    turns = abs(rate + more) * recording.frame / (2 * math.pi)
-    is_sure = not whole or (turns < _QUARTER and turn.value * (rate + more) > 0)
-    if whole:
-        notes.append(
-            f"r0 is known only up to whole turns per row, multiples of {whole:.6g}"
-            + "; C and the sign of r0 do not follow" * (not is_sure)
+    psi, spin = means.get("psi", _NONE), means["phi"].value
+    along = psi.value * math.cos(tilt)
+    rate, other = (slowest_rate(spin + x * along, turn, x * psi.value) for x in (1, -1))
+    if recording.kind == "angles" and FASTER * abs(other) < abs(rate):
+        notes.append(reversed_note(abs(rate) / turn if turn else 0.0))
+        recording, psi, along, rate = (
+            recording.mirrored,
+            _Mean(-psi.value, psi.std, -psi.start),
+            -along,
+            other,
         )
-    return recording, means, more, is_sure
-
-
-def _derived(given: Known, whole: float, notes: list[str], *, is_sure: bool) -> dict[str, _Pair]:
-    """Return r0, b/a = C r0/2mgs, and C, or C r0 if it is not sure, over unknown ones of m, g, s.
-
-    Their standard deviations are propagated from those of means and known inputs.
-    """
-    least, most = _RATIOS
-    is_moment_known, is_spin_known = (x in all_replaced(given) for x in ("A", "r0"))
-    is_exact = is_moment_known and WEIGHT <= given.keys()
-    unknown = [x for x in ("m", "s", "g") if x not in given]
-    over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
-
-    def numbers(v: Mapping[str, float]) -> tuple[dict[str, float], list[float]]:
-        """Return the numbers, and the shares of the neglected term at both bounds of C/A."""
-        along, turn = v.get("psi", 0.0) * math.cos(v["theta"]), v.get("psi", 0.0)
-        if is_spin_known:
-            found = {"r0": in_all_forms({**v, TILT: v["theta"], "psidot0": turn})["r0"]}
-        else:
-            found = {"r0": v["phi"] + along + whole}
-        if not turn or not found["r0"]:
-            return found, []
-        moment = in_all_forms(v)["A"] if is_moment_known else 1.0
-        ratios = [v["C"] / moment] * 2 if "C" in v and is_moment_known else [least, most]
-        slowest = found["r0"]
-        if not is_sure and "phi" in v:  # psi may count in the other direction
-            slowest = math.copysign(min(abs(slowest), abs(v["phi"] - along)), slowest)
-        ends = [along / (slowest * x) * (is_sure or x != most) for x in ratios]
-        if is_exact:
-            ends = []
-            found["b/a"] = 1 / (2 * turn) + along * moment / (2 * v["m"] * v["g"] * v["s"])
-        elif max(ends) > _MOST_BIAS:
-            return found, ends
-        else:
-            found["b/a"] = sum(1 / (1 - x) for x in ends) / (4 * turn)
-        product = 2 * found["b/a"] * math.prod(v[x] for x in "msg" if x in v)
-        found[f"C{over}" if is_sure else f"C*r0{over}"] = product / (found["r0"] if is_sure else 1)
-        return found, ends
-
-    _, ends = numbers({name: x for name, (x, _) in given.items()})
-    bias = 0.0
-    if ends and max(ends) > _MOST_BIAS:
-        notes.append("b/a is not determined: A Omega cos(theta) may be as large as C r0")
-    elif ends and ends[0] != ends[1]:
-        low, high = sorted(1 / (1 - x) for x in ends)
-        bias = (high - low) / (high + low) / 1.75
-        notes.append(
-            f"b/a and C r0 include A Omega cos(theta) = {100 * min(ends):.2g} to "
-            f"{100 * max(ends):.2g} % of C r0, for C/A from {most:g} to {least:g}: known A, m, g "
-            "and s make them exact"
-        )
-    pairs = _propagated(lambda v: numbers(v)[0], given)
-    return {
-        key: (x, math.hypot(std, abs(x) * bias * (key != "r0"))) for key, (x, std) in pairs.items()
-    }
-
-
-def _propagated(
-    numbers: Callable[[Mapping[str, float]], Mapping[str, float]], given: Known
-) -> dict[str, _Pair]:
-    """Return numbers of the given values, with standard deviations by linear propagation."""
-    values = {name: x for name, (x, _) in given.items()}
-    moved = [
-        [numbers(values | {name: values[name] + sign * std}) for sign in (_SMALL, -_SMALL)]
-        for name, (_, std) in given.items()
-        if std
-    ]
-    return {
-        key: (
-            x,
-            math.hypot(*((u.get(key, x) - w.get(key, x)) / 2 / _SMALL for u, w in moved)),
-        )
-        for key, x in numbers(values).items()
-    }
-
-
-def _spins(known: Known, means: Known, turn: float) -> dict[str, _Pair]:
-    """Return the known inputs that give the spin, as the means show them.
-
-    `means` has the tilt and the rates of psi and phi.  The visible spin is shifted by whole turns
-    per row, if these are invisible, to be nearest to the known one.
-    """
-    found = dict[str, _Pair]()
-    for name in (x for x in known if replaced_by(x) == "r0"):
-
-        def seen(v: Mapping[str, float], name: str = name) -> dict[str, float]:
-            start = {x: v[x] for x in (TILT, "psidot0")}
-            rate = v["phi"] + v["psidot0"] * math.cos(v[TILT])
-            wanted = in_all_forms(start | {name: known[name][0]})["r0"]
-            rate += whole_turns(rate, wanted, turn)
-            return {name: float(in_all_forms(start | {"r0": rate})[name])}
-
-        found |= _propagated(seen, means)
-    return found
+        means = means | {"psi": psi}
+    elif rate == math.inf:
+        rate = spin + along
+    is_sure = not turn or (abs(rate) * (1 + FASTER) < turn and psi.value * rate > 0)
+    return recording, means, rate - spin - along, is_sure
 
 
 def _faults(
