@@ -24,6 +24,8 @@ _TRIED = np.array([0.01, 0.3, 10.0])
 """Factors of the damping that are tried in each step."""
 GAIN = 1e-3
 """Fall of chi^2 that a Gauss-Newton step promises at most at a minimum (twice the decrement)."""
+_SMALL = 0.1
+"""The same for very many numbers."""
 Function = Callable[[Array, Any], Array]
 """Residuals of some tries, shape (starts, tries, numbers), from their parameters, shape (starts,
 tries, parameters), and the numbers of the starts."""
@@ -86,3 +88,23 @@ def descended(
         if not who.size:
             break
     return x, least
+
+
+def polished(function: Function, x: Array, most: int) -> Array:
+    """Return the least squares of very many numbers near those of some, shape (1, parameters).
+
+    Steps of Gauss and Newton keep the slopes of the first.
+    """
+    who, least = np.zeros(1, int), np.inf
+    rest, rise = slopes(function, x, who, central=False)
+    inverse = np.linalg.pinv(rise[0].T @ rise[0], hermitian=True)
+    best, chi2 = x, float(np.sum(rest**2))
+    for _ in range(most):
+        down = rest[0] @ rise[0]
+        if chi2 >= least or down @ inverse @ down < _SMALL:
+            break
+        least, best = chi2, x
+        x = x - inverse @ down
+        rest = function(x[:, np.newaxis], who)[:, 0]
+        chi2 = float(np.sum(rest**2))
+    return x if chi2 < least else best

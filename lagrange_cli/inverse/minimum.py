@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.types import Array
-from .descent import descended, slopes
+from .descent import descended, polished, slopes
 from .known import body_of
 from .problem import Problem, Ties
 from .spins import slowest_rate
@@ -19,8 +19,6 @@ MOST_ROWS = 1000
 """Rows of the fit that finds a minimum; its last steps use all rows."""
 _STEPS = 40
 """Steps of a descent at most."""
-_SMALL = 0.1
-"""Fall of chi^2 by the last of the steps with all rows at most."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 _DEPENDENT = 1e-7
@@ -109,11 +107,9 @@ class Minimum:
         """Return the minimum that obeys known inputs; its spread is that without them."""
         problem = replace(self.problem, ties=ties)
         x = self.x[np.newaxis]
-        for few in (
-            problem.thinned(MOST_ROWS),
-            *[problem] * (problem.recording.t.size > MOST_ROWS),
-        ):
-            x, _ = few.solve(x, _STEPS)
+        x, _ = problem.thinned(MOST_ROWS).solve(x, _STEPS)
+        if problem.recording.t.size > MOST_ROWS:
+            x = polished(problem.weighted, x, _STEPS)
         return replace(minimum_at(self.problem, x), is_curved=self.is_curved)
 
 
@@ -150,7 +146,7 @@ def converged(
         few, x = few.reweighted(x, floors, _STEPS // 2)
         problem = replace(problem, sizes=few.sizes)
     if final and problem.recording.t.size > MOST_ROWS:
-        x, _ = problem.solve(x, _STEPS, _SMALL, central=False)
+        x = polished(problem.weighted, x, _STEPS)
         problem = problem if is_given else problem.with_noise(x, floors)
     problem = problem if is_given else replace(problem, sizes=problem.sizes * factors)
     found = minimum_at(problem, x)
