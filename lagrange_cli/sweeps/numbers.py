@@ -14,7 +14,6 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import ellipe, ellipeinc, ellipkinc, ellipkm1, elliprf
 
 from ..arithmetic.bounded import (
     EPS,
@@ -45,7 +44,7 @@ _RELEASED, _FROM_PAIRS = 64 * EPS, 8 * EPS
 _FROM_CUBIC = 2.0**-60
 """Relative error of the distances of u1 and u3 from the upper pole above which another cubic is
 tried."""
-_NEWTON_STEPS, _STEPS_IN_PAIRS, _MEAN_STEPS = 100, 2, 11
+_NEWTON_STEPS, _STEPS_IN_PAIRS, _MEAN_STEPS, _AGM_STEPS = 100, 2, 11, 16
 
 
 def _by_relative_errors(value: Array, *parts: Bounded, least: float = 16.0) -> Bounded:
@@ -59,17 +58,39 @@ def _by_relative_errors(value: Array, *parts: Bounded, least: float = 16.0) -> B
 def agm(one: float, k: Bounded) -> Bounded:
     """Return the arithmetic-geometric mean of 1 and k; its relative error is at most that of k."""
     k = k.rounded()
-    return _by_relative_errors(np.pi / 2 / ellipkm1(k.value * k.value), k)
+    return _by_relative_errors(agm_of(k.value), k, least=2.0 * _AGM_STEPS)
+
+
+def agm_of(k: Array) -> Array:
+    """Return the arithmetic-geometric means of 1 and k <= 1, to 1.5 roundings for each step.
+
+    The neighbours of a number have no influence on it.
+    """
+    m, g, found = np.ones_like(k), k, k * np.nan
+    going = np.ones(np.shape(k), np.bool_)
+    for _ in range(_AGM_STEPS):
+        still = going & (m - g > 2.0**-13 * m)  # after a step the distance is 2^-29 at most
+        m, g = (m + g) * 0.5, np.sqrt(m * g)
+        if (done := going ^ still).any():
+            found = np.where(done, (m + g) * 0.5, found)
+        if not still.any():
+            break
+        going = still
+    return found
 
 
 def complete_E(k_prime: Bounded) -> Bounded:
     """Return E, which is at least 1; its derivative by k' is at most 1."""
+    from scipy.special import ellipe  # start-up
+
     k_prime = k_prime.rounded()
     return _by_relative_errors(ellipe(1 - k_prime.value * k_prime.value), k_prime)
 
 
 def ellint_E(phi: Bounded, k: Bounded) -> Bounded:
     """Return E(phi, k); its derivatives are at most 1 and k F(phi, k)."""
+    from scipy.special import ellipeinc, ellipkinc  # start-up
+
     phi, k = phi.rounded(), k.rounded()
     m = k.value * k.value
     found = ellipeinc(phi.value, m)
@@ -87,14 +108,16 @@ def nome_of(k: Bounded, k_prime: Bounded) -> Bounded:
     x, y = k.value, k_prime.value
     part = x * x / (2 * (1 + y) * (1 + np.sqrt(y)) ** 2)  # (1 - sqrt(k'))/(1 + sqrt(k'))/2
     fourth = part**4
-    series = part * (1 + fourth * (2 + fourth * (15 + fourth * 150)))
-    exponent = np.pi * ellipkm1(x * x) / ellipkm1(y * y)
-    value = np.where(x < y, series, np.exp(-exponent))
-    return _by_relative_errors(value, k, k_prime, least=16 + 16 * np.pi)
+    value = part * (1 + fourth * (2 + fourth * (15 + fourth * 150)))
+    if (is_large := x >= y).any():
+        value = np.where(is_large, np.exp(-np.pi * agm_of(y) / agm_of(x)), value)
+    return _by_relative_errors(value, k, k_prime, least=16 + 4 * _AGM_STEPS * np.pi)
 
 
 def integral_F(sine: Bounded, cosine: Bounded, k: Bounded) -> Bounded:
     """Return F(phi, k'), where tan(phi) = sine/cosine: its terms are positive (DLMF 19.25.5)."""
+    from scipy.special import elliprf  # start-up
+
     s, c, k = sine.rounded(), cosine.rounded(), k.rounded()
     s2, c2 = s.value * s.value, c.value * c.value
     found = s.value * elliprf(c2, c2 + k.value * k.value * s2, c2 + s2)

@@ -26,6 +26,8 @@ LOADED = {
     "solve": {"rich"},
     "table": {"numpy"},
     "sweep --r0 1:2:3": {"numpy", "scipy"},
+    "sweep --r0 1:2:3 --keys K,mean_precession_rate": {"numpy"},
+    "find --r0 40:60 T_nutation=0.4 --format csv": {"numpy"},
     "jacobi --k 0.8 --format json": set(),
     "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json": set(),
 }
