@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from bisect import bisect_left
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -20,7 +21,7 @@ from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
 from .measured import LEAST_ROWS, Measured, measured
-from .neighbours import DECAY
+from .neighbours import DECAY, SLOWING
 from .outcome import GOOD, STEADY, Outcome
 from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
 from .rows import calmness, evenly_timed, likely_gap, release, with_gap
@@ -40,10 +41,6 @@ _REFINED = 3
 """Times that frames which are no axes are refined by the motion that is found in them."""
 _AS_CALM = 0.01
 """Logarithm of the noise beside harmonics that another frame may have more."""
-_CALMER = 0.1
-"""Logarithm of the noise by which a part or windows must be calmer."""
-_OUTLYING = 30.0
-"""The same without outliers, over their share of the rows."""
 _AS_NOISY = 0.1
 """Logarithm of the usual residual, per channel, that another reading may have more."""
 _SURE_GAP = 12.0
@@ -60,10 +57,6 @@ _FEW = 0.03
 """Largest share of rows that are outliers."""
 _LEAST_TIMES = 0.25
 """Least share of times that differ."""
-_LOST = 4.0
-"""Standard deviations of a loss of spin if windows are not good."""
-_STEADILY = 0.3
-"""Least share of that loss in either half."""
 _CLOSER = 0.3
 """Residual of the spin in a window over that of the whole recording."""
 
@@ -83,6 +76,7 @@ class Advice:
         self.cost = 1 + recording.t.size / _LONG
         self.cost *= 1.0 if "theta" in recording.angles else _WITHOUT_TILT
         self.left, self.is_early = _BUDGET - again * self.cost, True
+        self.windows: dict[tuple[int, int], Outcome | None] = {}
 
     def reasons(self) -> Iterator[Reason]:
         """Yield advice, the best first."""
@@ -90,7 +84,7 @@ class Advice:
             yield from (Reason(Kind.READING, x) for x in self._names())
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
-        if DECAY in self.outcome.shown or Kind.MACHINE not in self.kinds:
+        if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         for texts in (self._times, self._meanings, self._frames, self._aliased, self._parts):
             yield from (Reason(Kind.READING, x) for x in texts())
@@ -205,62 +199,59 @@ class Advice:
 
     def _parts(self) -> Iterator[str]:
         """Yield the rows without which the fit is good: outliers, and those before a release."""
-        recording, noise = self.recording, calmness(self.recording)
+        recording = self.recording
         if self.kinds == {Kind.MACHINE}:
             return
         rests = self.outcome.residuals.values()
         wrong = {t for x in rests for t in x.t[x.outliers].tolist()}
-        if 0 < len(wrong) <= _FEW * recording.t.size:
-            rest = recording.rows(~np.isin(recording.t, [*wrong]))
-            least = _OUTLYING * len(wrong) / recording.t.size
-            if noise - calmness(rest) > least and self._is_good(rest):
-                shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
-                yield f"leave out the rows at t = {shortened(shown)}"
-        row = release(recording)
-        free = recording.part(slice(row, None))
-        if row and noise - calmness(free) > _CALMER and self._is_good(free):
-            held = f"the top is held until about t = {free.t_start:.4g}"
-            yield f"{held}: leave out the rows before the release"
+        others = recording.rows(~np.isin(recording.t, [*wrong]))
+        if 0 < len(wrong) <= _FEW * recording.t.size and self._is_good(others):
+            shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
+            yield f"leave out the rows at t = {shortened(shown)}"
+        if row := release(recording):
+            free = recording.part(slice(row, None))
+            if self._is_good(free):
+                held = f"the top is held until about t = {free.t_start:.4g}"
+                yield f"{held}: leave out the rows before the release"
 
     def _windows(self) -> Iterator[Reason]:
-        """Yield the number of windows that are all good and show a decay, or a decay within them.
+        """Yield the least number of windows that are all good and show a decay.
 
-        In a window, a decay of the phase is as many times less significant as the window is shorter
-        to the power of 2.5.
+        If there is none, yield the loss of spin through the shortest windows.  In a window, a decay
+        of the phase is as many times less significant as the window is shorter to the power of 2.5.
         """
-        recording, lost, least = self.recording, "", 0.0
-        if len(recording.angles) == 1:  # its known start is that of the first window
+        recording, decay = self.recording, self.outcome.shown.get(DECAY)
+        least = (decay.size / decay.std / 2) ** 0.4 if decay else 0.0
+        counts = [x for x in _WINDOWS if least <= x <= recording.t.size / _ROWS_PER_WINDOW]
+        if not counts or len(recording.angles) == 1:  # whose known start is of the first window
             return
-        if decay := self.outcome.shown.get(DECAY):
-            least = (decay.size / decay.std / 2) ** 0.4
-        most = recording.t.size / _ROWS_PER_WINDOW
-        tried = [x for x in _WINDOWS if least <= x <= most]
-        noise = calmness(recording)
-        for count in tried:
-            try:
-                parts = recording.windows(count)
-            except LagtopError:  # of rows that are not even
+        for count in counts[
+            bisect_left(counts, True, key=lambda x: self._are_good(x, *_ends(x))) :
+        ]:
+            seen = decay_of([x for i in _ends(count) if (x := self._window(count, i))])
+            if seen and seen.time is not None and self._are_good(count, *range(count)):
+                yield Reason(Kind.WINDOWS, f"the spin decays: use {arg('window', count)}")
                 return
-            three = [parts.pop(i) for i in (-1, count // 2, 0)][::-1]
-            if not decay and noise - sum(map(calmness, three)) / 3 < _CALMER:
-                continue
-            fits = list[Outcome]()
-            for part in three:
-                found = self._fit(part, chance=CHANCE / count)
-                if found is None:
-                    break
-                fits.append(found)
-                if found.verdict != GOOD and not (count == tried[-1] and self._is_closer(found)):
-                    break
-            else:
-                lost = _loss(fits) or lost
-                has_decay = (seen := decay_of(fits)) is not None and seen.time is not None
-                others = (self._fit(x, chance=CHANCE / count) for x in parts)
-                if has_decay and all(x is not None and x.verdict == GOOD for x in others):
-                    yield Reason(Kind.WINDOWS, f"the spin decays: use {arg('window', count)}")
-                    return
-        if lost:
-            yield Reason(Kind.WINDOWS, f"the spin decays: {lost}, and within each window")
+        fits = [x for i in _ends(counts[-1]) if (x := self._window(counts[-1], i))]
+        if len(fits) == 3 and all(x.verdict == GOOD or self._is_closer(x) for x in fits):
+            seen = decay_of(fits, is_good=False)
+            numbers = [x.numbers[seen.quantity] for x in fits] if seen else []
+            sizes = [-abs(x.value) for x in numbers]
+            if seen and seen.time is not None and sizes == sorted(sizes):
+                lost = f"{seen.quantity} falls from {numbers[0]} to {numbers[2]}"
+                yield Reason(Kind.WINDOWS, f"the spin decays: {lost}, and within each window")
+
+    def _window(self, count: int, number: int) -> Outcome | None:
+        """Return the fit of one of some windows, None if rows are uneven or it costs too much."""
+        if (count, number) not in self.windows:
+            with suppress(LagtopError):
+                part = self.recording.windows(count)[number]
+                self.windows[count, number] = self._fit(part, chance=CHANCE / count)
+        return self.windows.get((count, number))
+
+    def _are_good(self, count: int, *numbers: int) -> bool:
+        """Return whether some windows are good."""
+        return all((x := self._window(count, i)) and x.verdict == GOOD for i in numbers)
 
     def _is_closer(self, part: Outcome) -> bool:
         """Return whether a window shows the spin much better than the whole recording.
@@ -276,15 +267,16 @@ class Advice:
 
     def gap(self) -> Iterator[str]:
         """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
-        recording = self.recording
-        if (found := likely_gap(recording)) is None:
+        recording, late = self.recording, self.outcome.late
+        found = (late.one.row, round(late.size)) if late else likely_gap(recording)
+        row, count = found or (0, 0)
+        if count < 1:
             return
-        row, count = found
         other = self._fit(with_gap(recording, row, count))
         if other is None or other.verdict != GOOD:
             return
         gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
-        if gain > _SURE_GAP:
+        if gain > max([_SURE_GAP, *[x.score for x in self.outcome.shown.values()]]):
             at = recording.t_start + float(recording.t[row])
             rows = "1 row is" if count == 1 else f"{count} rows are"
             yield f"{rows} lost before t = {at:.6g}: write the times of the frames"
@@ -316,12 +308,6 @@ class Advice:
         yield Reason(Kind.CHECK, text)
 
 
-def _loss(fits: Sequence[Outcome]) -> str:
-    """Return a steady loss of spin from window to window in words, if there is one."""
-    name = "r0" if all("r0" in x.numbers for x in fits) else "b"
-    first, middle, last = (x.numbers[name] for x in fits)
-    lost = abs(first.value) - abs(last.value)
-    if lost < _LOST * math.hypot(first.own_std, last.own_std):
-        return ""
-    is_steady = _STEADILY < (abs(first.value) - abs(middle.value)) / lost < 1 - _STEADILY
-    return f"{name} falls from {first} to {last}" * is_steady
+def _ends(count: int) -> tuple[int, int, int]:
+    """Return the numbers of the first, a middle and the last window."""
+    return 0, count // 2, count - 1

@@ -73,9 +73,9 @@ def fit_windows(
     ]
 
 
-def decay_of(outcomes: Sequence[Outcome]) -> Decay | None:
-    """Return the decay through windows, or None if fewer than three of them are good."""
-    good = [x for x in outcomes if x.verdict == GOOD]
+def decay_of(outcomes: Sequence[Outcome], *, is_good: bool = True) -> Decay | None:
+    """Return the decay through windows that are good, or all; None of fewer than three."""
+    good = [x for x in outcomes if x.verdict == GOOD or not is_good]
     if len(good) < 3:
         return None
     name = "r0" if all("r0" in x.numbers for x in good) else "b"

@@ -43,8 +43,7 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     advice = Advice(recording, known, outcome, again)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
-        is_late = outcome.neighbours is not None and outcome.neighbours.late is not None
-        found = (Reason(Kind.ROWS, x) for x in (advice.gap() if is_late else ()))
+        found = (Reason(Kind.ROWS, x) for x in (advice.gap() if outcome.late else ()))
     return replace(outcome, reasons=[*outcome.reasons, *found])
 
 

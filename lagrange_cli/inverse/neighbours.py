@@ -30,21 +30,15 @@ SMALL = 0.01
 _SURE = 4.0
 """Standard deviations of a neighbour that is shown; more if it is searched at many places, or in
 windows."""
-_MOVED = 1.0
-"""Standard deviations by which a neighbour that is shown moves a number of the fit at least."""
+_MAYBE = 2.5
+"""Standard deviations within which a neighbour may be there unseen."""
 _ALIKE = 6.0
 """Difference of chi^2 below which two neighbours explain a recording equally well."""
-_MAYBE = 2.5
-"""Standard deviations from which rows may be lost, so that a fit with a gap is worth its time."""
-_UNSEEN = 2.0
-"""Standard deviations of a neighbour that may be there beside its size."""
 _EDGE = 6
 """Rows at either end that show no step."""
 _EXPLAINS = 4.0
 """Fall of chi^2, as a factor, by a neighbour that explains a motion far from that of any top."""
-_LINES = 5
-"""Neighbours that a line lists."""
-_FOLLOWED = 6
+_LIKELIEST = 6
 """Neighbours among which the name is chosen."""
 _STEPS = 2
 """How often templates are computed again, along the motion that they change."""
@@ -52,8 +46,6 @@ _SMALLEST = 1e-5
 """Size below which digits of the data and of the motion count."""
 _LARGEST = 0.5
 """Size from which a change is not a small one, so that its template is wrong."""
-_WIDEST = 1 / (2 * math.pi**2)
-"""The same of the square of a filter's width over the period: no nutation is left."""
 _POINTS = 96
 """Points of the grid in a period of the nutation."""
 _PER_TURN = 10
@@ -70,6 +62,9 @@ LOST = "lost rows"
 """The name of a step of the clock."""
 DECAY = "a decay of the spin"
 """The name of friction."""
+_DRIFT, _WANDER = "a clock whose rate changes", "a clock whose rate wanders"
+SLOWING = {DECAY, _DRIFT, _WANDER}
+"""Names of neighbours that a loss of spin may explain."""
 
 
 class Neighbour(NamedTuple):
@@ -147,10 +142,7 @@ def misread(x: Variations, one: Measured) -> Iterator[Neighbour]:
         return only(theta=np.sum(by * down, axis=0), psi=turn, phi=-c * turn)
 
     drift = x.rates * x.t**2 / (2 * x.length)
-    yield Neighbour("a clock whose rate changes", "by {} %", [drift])
-    place = 2 * x.t / x.length - 1
-    wander = [x.rates * Legendre.basis(n)(place) * x.length / 4 for n in (3, 4, 5)]
-    yield Neighbour("a clock whose rate wanders", "by {} %", wander)
+    yield Neighbour(_DRIFT, "by {} %", [drift])
     if "psi" in seen:
         mean = only(psi=np.polyfit(x.t, psi, 1)[0] * x.t)
         yield Neighbour("a camera that turns", "with {} % of the precession", [mean])
@@ -176,43 +168,91 @@ def misread(x: Variations, one: Measured) -> Iterator[Neighbour]:
         yield Neighbour("a wrong scale of psi", "by {} %", [only(psi=psi)])
 
 
-class Finding(NamedTuple):
-    """What a recording shows of a neighbour of the fitted top."""
+def wander(x: Variations) -> Neighbour:
+    """Return a clock whose rate wanders; its drift is in the model error already."""
+    place = 2 * x.t / x.length - 1
+    drifts = [x.rates * Legendre.basis(n)(place) * x.length / 4 for n in (2, 3, 4)]
+    return Neighbour(_WANDER, "by {} %", drifts)
 
-    one: Neighbour
-    motion: Variations
-    """The motion along which the template was computed."""
-    moved: Array
-    """Changes of the parameters with it, in the order of `Variations.by_parameters`."""
-    sizes: Array
-    """Its size in each direction."""
-    size: float
-    std: float
-    is_possible: bool
-    """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
-    sigmas: float
-    """The size in standard deviations, or the same probability in several directions."""
-    least: float
-    """The least of them if it is shown."""
-    gain: float
-    """The fall of chi^2."""
-    chi2: float
-    """Chi^2 with it, for white noise."""
-    noise: float
-    """The mean square of its residuals, wider if they correlate."""
-    effect: float
-    """How far it moves a number of the fit at most, in standard deviations of the fit."""
-    shifts: Mapping[str, Array]
-    """Relative changes of numbers by the size that may be there unseen, in each direction."""
-    is_untested: bool
-    """Whether the recording could not show one of the size SMALL."""
-    where: str
-    """The time or the spin at which it was found, in words, or empty."""
+
+class Finding:
+    """What a recording shows of a neighbour of the fitted top, along a motion.
+
+    It has the `size` and its standard deviation, the `sizes` in each direction, the `fall` of
+    chi^2 to `chi2`, and the mean square `noise` of the residuals, wider if they correlate.  Its
+    `score` is set when findings are ranked.
+    """
+
+    score: float
+
+    def __init__(self, fit: Neighbours, one: Neighbour, motion: Variations) -> None:
+        self.fit, self.one, self.motion = fit, one, motion
+        raw = np.stack([fit.columns(x, one.row) for x in one.changes], axis=1)
+        shared = fit.basis.T @ raw
+        left, values, axes = np.linalg.svd(raw - fit.basis @ shared, full_matrices=False)
+        sure = values > 1e-6 * np.linalg.norm(raw)
+        left, inverse, count = left[:, sure], axes[sure].T / values[sure], max(int(sure.sum()), 1)
+        parts = left.T @ fit.rest
+        rest, self.sizes, self.by_one = (
+            fit.rest - left @ parts,
+            inverse @ parts,
+            -fit.inverse @ shared,
+        )
+        self.fall, self.chi2 = float(parts @ parts), float(rest @ rest)
+        self.rests = fit.by_channel(rest)
+        wide = np.repeat([x.widening() for x in self.rests], [x.y.size for x in self.rests])
+        self.noise = float(np.sum((wide * rest) ** 2)) / fit.free + fit.least
+        self.size = float(self.sizes[0] if len(raw.T) == 1 else np.linalg.norm(self.sizes))
+        spread = math.sqrt(self.noise / count) * float(np.linalg.norm(inverse))
+        self.std = spread if sure.any() else math.inf
+        freedom = max(fit.free / float(np.mean(wide**2)) - count, 1.0)
+        chance = float(fdtrc(count, freedom, self.fall / self.noise / count))
+        self.sigmas = -float(ndtri(max(chance, 1e-300) / 2))
 
     @property
     def is_shown(self) -> bool:
-        """Whether it is there and matters."""
-        return self.is_possible and self.sigmas >= self.least and self.effect >= _MOVED
+        """Whether it is there and moves a number of the fit by a standard deviation or more."""
+        least = math.sqrt(_SURE**2 + 2 * math.log(self.one.tried * CHANCE / self.fit.chance))
+        return self.is_possible and self.sigmas >= least and self.effect >= 1
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
+        size, least, most = abs(self.size), _SMALLEST, _LARGEST
+        if self.one.is_square:
+            least, most = least**2, 1 / (2 * math.pi**2)  # beyond which no nutation is left
+        is_possible = least < size < most and (self.size > 0 or not self.one.is_positive)
+        if self.one.name == LOST:
+            is_possible = size > 0.5 and abs(size - round(size)) < max(3 * self.std, 0.1)
+        is_far = any(x.is_large or x.outliers.any() for x in self.rests)
+        explains = not is_far or self.chi2 * _EXPLAINS < self.fit.chi2
+        return is_possible and explains and math.isfinite(self.std)
+
+    @cached_property
+    def effect(self) -> float:
+        """How far it moves a number of the fit at most, in standard deviations of the fit."""
+        fit = self.fit
+        stds = math.sqrt(self.noise) * np.linalg.norm(fit.inverse[: fit.spins], axis=1) + 1e-300
+        return float(np.max(np.abs(self.by_one[: fit.spins] @ self.sizes) / stds))
+
+    @property
+    def change(self) -> Array:
+        """The change of the motion by it and by the parameters that it moves."""
+        moved = self.motion.by_parameters
+        parameters = np.tensordot(self.by_one @ self.sizes, moved[self.fit.kept], 1)
+        return np.asarray(np.tensordot(self.sizes, self.one.changes, 1) + parameters)
+
+    @cached_property
+    def shifts(self) -> dict[str, Array]:
+        """Relative changes of numbers by a size that may be there unseen, in each direction."""
+        small = SMALL ** (1 + self.one.is_square)
+        unseen = min(small, abs(self.size) + _MAYBE * self.std)
+        return self.fit.relative(self.by_one * max(unseen, self.fit.smoothing * self.one.is_square))
+
+    @property
+    def is_untested(self) -> bool:
+        """Whether the recording could not show one of the size SMALL."""
+        return self.std * _SURE > SMALL ** (1 + self.one.is_square)
 
     @property
     def directions(self) -> int:
@@ -221,26 +261,29 @@ class Finding(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Its name with its size."""
-        if self.one.name == LOST:
-            count = round(abs(self.size))
-            rows = "1 row is" if count == 1 else f"{count} rows are"
+        """Its name with its size, and the time or the spin at which it was found."""
+        one, recording, where = self.one, self.fit.recording, ""
+        if one.row:
+            where = f" t = {recording.t_start + float(recording.t[one.row]):.6g}"
+        elif math.isfinite(self.motion.ratio) and self.fit.spins == 5:
+            where = f", if r0 = {self.motion.b * self.motion.ratio / self.fit.period:.3g}"
+        if one.name == LOST:
+            count = max(round(abs(self.size)), 1)
             how = "doubled at" if self.size < 0 else "lost before"
-            return f"{rows} {how}{self.where}"
+            return f"{count} row{'s are' if count > 1 else ' is'} {how}{where}"
         root = math.sqrt(abs(self.size)) + 1e-300
-        pair = (root, self.std / 2 / root) if self.one.is_square else (self.size, self.std)
-        unit = 180 / math.pi if "degrees" in self.one.amount else 100.0
+        pair = (root, self.std / 2 / root) if one.is_square else (self.size, self.std)
+        unit = 180 / math.pi if "degrees" in one.amount else 100.0
         shown = uncertain_text(*(unit * x for x in pair))
-        return f"{self.one.name} {self.one.amount.format(shown)}{self.where}"
+        return f"{one.name} {one.amount.format(shown)}{where}"
 
 
 class Neighbours:
     """The neighbours of a fitted top, against its residuals over their standard deviations.
 
     `rest` are the residuals in radians, shape (channels, times).  The fit `is_failing` if they are
-    not those of a top.  `smoothing` is the square of the
-    width of a filter, over the period, if one made the noise smooth.  `chance` is the probability
-    that noise fails a test.
+    not those of a top.  `smoothing` is the square of the width of a filter, over the period, if one
+    made the noise smooth.  `chance` is the probability that noise fails a test.
     """
 
     def __init__(
@@ -257,8 +300,7 @@ class Neighbours:
     ) -> None:
         self.recording, self.residuals, self.motion = recording, residuals, motion
         self.period, self.smoothing, self.is_failing = period, smoothing, is_failing
-        self.chance = chance
-        self.rows, one = recording.t / period, recording
+        self.chance, self.rows, one = chance, recording.t / period, recording
         noise = [
             one.sigma.get(x)
             or max(min(y.rms, y.neighbours if is_failing else math.inf), y.step / math.sqrt(12))
@@ -266,9 +308,9 @@ class Neighbours:
         ]
         self.sizes = np.maximum(noise, ROUNDING)[:, np.newaxis]
         self.least = float(np.mean((ROUNDING / self.sizes) ** 2))
-        spins = "phi" in one.angles
-        self.kept = [0, 1, 2, 3, 4, *[5, 6] * spins, *[7] * ("psi" in one.angles)]
-        columns = self._columns(motion.by_parameters[self.kept].swapaxes(0, 1)).T
+        self.spins = 5 + ("phi" in one.angles)  # a, b, the start, r0
+        self.kept = [*range(self.spins), *[6] * (self.spins > 5), *[7] * ("psi" in one.angles)]
+        columns = self.columns(motion.by_parameters[self.kept].swapaxes(0, 1)).T
         norm = np.linalg.norm(columns, axis=0) + 1e-300
         left, values, axes = np.linalg.svd(columns / norm, full_matrices=False)
         sure = values > _DEPENDENT * values[0]
@@ -278,7 +320,7 @@ class Neighbours:
         self.chi2 = float(self.rest @ self.rest)
         self.free = max(self.rest.size - self.basis.shape[1], 2)
 
-    def _columns(self, changes: Array, row: int = 0) -> Array:
+    def columns(self, changes: Array, row: int = 0) -> Array:
         """Return changes on the grid as changes of the channels in the rows, in the last axis."""
         t, tilt = self.motion.t, self.motion.angles[0]
         theta, phi, psi = make_interp_spline(t, changes, axis=-1)(self.rows)
@@ -288,6 +330,20 @@ class Neighbours:
         shown = np.stack([found[x] for x in self.recording.channels], axis=-2) / self.sizes
         shown = shown * (np.arange(self.rows.size) >= row)
         return np.asarray(shown[..., self.recording.present])
+
+    def by_channel(self, rest: Array) -> list[Residuals]:
+        """Return residuals by channel, from those over their standard deviations."""
+        one, whole = self.recording, np.full(self.recording.present.shape, np.nan)
+        whole[one.present] = rest
+        found = zip(whole * self.sizes, one.present, self.residuals.values(), strict=True)
+        return [replace(old, t=one.t[x], y=y[x]) for y, x, old in found]
+
+    def relative(self, moved: Array) -> dict[str, Array]:
+        """Return relative changes of numbers by changes of parameters; that of r0 may be unseen."""
+        x = self.motion
+        spin = moved[5] / x.r0 if self.spins > 5 and x.r0 else 0 * moved[0]
+        tilt = x.by_parameters[self.kept, 0, 0] @ moved / x.angles[0, 0]
+        return {"a": moved[0] / x.a, "b": moved[1] / (x.b or math.inf), "r0": spin, "theta0": tilt}
 
     def _everywhere(self, motion: Variations) -> Iterator[Neighbour]:
         """Yield the neighbours of a motion that act in all rows."""
@@ -303,7 +359,7 @@ class Neighbours:
     @cached_property
     def findings(self) -> list[Finding]:
         """What the recording shows of machines, and of faults of clock, camera and angles."""
-        return [self._finding(x, self.motion) for x in self._everywhere(self.motion)]
+        return [Finding(self, x, self.motion) for x in self._everywhere(self.motion)]
 
     @cached_property
     def steps(self) -> list[Finding]:
@@ -313,14 +369,13 @@ class Neighbours:
         order = np.argsort(-rows, kind="stable")
         last = np.flatnonzero(np.diff(rows[order], append=-1))  # of the numbers of a row
         for one in self._from_row(self.motion):
-            column = self._columns(one.changes[0])
+            column = self.columns(one.changes[0])
             parts = np.stack([column * self.rest, column**2, *(column * self.basis.T)])
             work, size, *taken = np.cumsum(parts[:, order], axis=1)[:, last]
             left = size - np.sum(np.square(taken), axis=0)
             gains = np.where(left > 0.02 * size.max() / self.rows.size, work**2, 0.0)
             row = int(rows[order][last[np.argmax((gains / (left + 1e-300))[_EDGE:-_EDGE]) + _EDGE]])
-            at = one._replace(row=row, tried=self.rows.size)
-            found.append(self._finding(at, self.motion))
+            found.append(Finding(self, one._replace(row=row, tried=self.rows.size), self.motion))
         return found
 
     def _turning(self) -> Iterator[Finding]:
@@ -332,125 +387,59 @@ class Neighbours:
             return
         spins = np.copysign(rates, x.b)[:, np.newaxis]
         for one in unround(x, x.angles[1] + (spins - x.b) * x.since):
-            columns = np.stack([self._columns(y) for y in one.changes], axis=-1)
+            columns = np.stack([self.columns(y) for y in one.changes], axis=-1)
             columns = columns - self.basis @ (self.basis.T @ columns)
             left, sizes, _ = np.linalg.svd(columns, full_matrices=False)
             parts = np.where(sizes > 1e-6 * sizes.max(), self.rest @ left, 0.0)
             best = int(np.argmax(np.sum(parts**2, axis=1)))
             changes, spin = [y[:, best] for y in one.changes], float(spins[best, 0])
             motion = x.along(x.only(phi=(spin - x.b) * x.since), spin / x.b)
-            yield self._finding(one._replace(changes=changes, tried=rates.size), motion)
+            yield Finding(self, one._replace(changes=changes, tried=rates.size), motion)
 
     @cached_property
     def shown(self) -> list[Finding]:
         """The neighbours that the recording shows, the best first."""
-        likely, cost = [*self.findings, *self.steps], math.log(self.free)
+        likely = [*self.findings, *self.steps, Finding(self, wander(self.motion), self.motion)]
         if not (self.is_failing or any(x.is_shown for x in likely)):
             return []
         likely += self._turning() if self.is_failing else []
-        likely.sort(key=lambda x: self.free * math.log(x.chi2 + self.least) + x.directions * cost)
-        found = [y for x in likely[:_FOLLOWED] if (y := self._followed(x)).is_shown]
-        noise = min([(x.chi2, x.noise) for x in found], default=(0.0, 1.0))[1]
-        found = [x._replace(gain=x.gain * x.noise / noise - x.directions * cost) for x in found]
-        return sorted(found, key=lambda x: -x.gain)
+        followed = (self._followed(x) for x in self._ranked(likely)[:_LIKELIEST])
+        return self._ranked([x for x in followed if x.is_shown])
 
-    def _followed(self, found: Finding) -> Finding:
+    def _ranked(self, found: list[Finding]) -> list[Finding]:
+        """Return findings by their scores: log likelihoods, less the costs of their parameters."""
+        best = min(found, key=lambda x: x.chi2, default=None)
+        count = best.chi2 / best.noise if best else 0.0  # of independent residuals
+        for x in found:
+            fall = count * math.log((self.chi2 + self.least) / (x.chi2 + self.least))
+            x.score = fall - x.directions * math.log(self.free)
+        return sorted(found, key=lambda x: -x.score)
+
+    def _followed(self, first: Finding) -> Finding:
         """Return what the recording shows of a neighbour along the motion that it has changed.
 
         If this explains less, as for a clock that changes rates by much, return what was found.
         """
-        begin, old, first = found.motion, found.one, found
+        begin, old, found = first.motion, first.one, first
         for _ in range(_STEPS):
-            change = np.tensordot(found.sizes, found.one.changes, 1)
-            change += np.tensordot(found.moved, begin.by_parameters, 1)
-            motion = begin.along(change * (found.one.row == 0), begin.ratio)
-            every = [*self._everywhere(motion), *self._from_row(motion)]
+            motion = begin.along(found.change * (old.row == 0), begin.ratio)
+            every = [*self._everywhere(motion), *self._from_row(motion), wander(motion)]
             every += unround(motion, motion.angles[1]) if math.isfinite(motion.ratio) else []
             one = next(x for x in every if x.name == old.name)
-            found = self._finding(one._replace(row=old.row, tried=old.tried), motion)
+            found = Finding(self, one._replace(row=old.row, tried=old.tried), motion)
         return min(first, found, key=lambda x: x.chi2)
-
-    def _finding(self, one: Neighbour, motion: Variations) -> Finding:
-        """Return what the recording shows of a neighbour along a motion."""
-        raw = np.stack([self._columns(x, one.row) for x in one.changes], axis=1)
-        shared = self.basis.T @ raw
-        left, values, axes = np.linalg.svd(raw - self.basis @ shared, full_matrices=False)
-        sure = values > 1e-6 * np.linalg.norm(raw)
-        left, inverse, count = left[:, sure], axes[sure].T / values[sure], max(int(sure.sum()), 1)
-        parts = left.T @ self.rest
-        rest, sizes = self.rest - left @ parts, inverse @ parts
-        rests = self._by_channel(rest)
-        wide = np.repeat([x.widening() for x in rests], [x.y.size for x in rests])
-        noise = float(np.sum((wide * rest) ** 2)) / self.free + self.least
-        gain, chi2 = float(parts @ parts) / noise, float(rest @ rest)
-        freedom = max(self.free / float(np.mean(wide**2)) - count, 1.0)
-        chance = max(float(fdtrc(count, freedom, gain / count)), 1e-300)
-        size = float(sizes[0] if sizes.size == 1 else np.linalg.norm(sizes))
-        std = math.sqrt(noise / count) * float(np.linalg.norm(inverse)) if sure.any() else math.inf
-        spins = 5 + ("phi" in self.recording.angles)
-        by_one, moved = self.inverse @ shared, np.zeros(8)
-        moved[self.kept] = -by_one @ sizes
-        stds = math.sqrt(noise) * np.linalg.norm(self.inverse[:spins], axis=1) + 1e-300
-        small, largest = (SMALL**2, _WIDEST) if one.is_square else (SMALL, _LARGEST)
-        is_possible = (
-            math.isfinite(std) and abs(size) < largest and (size > 0 or not one.is_positive)
-        )
-        if one.name == LOST:
-            is_possible = abs(size) > 0.5 and abs(size - round(size)) < max(3 * std, 0.1)
-        is_possible &= abs(size) > (_SMALLEST**2 if one.is_square else _SMALLEST)
-        is_far = any(x.is_large or x.outliers.any() for x in rests)
-        is_possible &= not is_far or chi2 * _EXPLAINS < self.chi2
-        unseen = min(small, abs(size) + _UNSEEN * std)
-        unseen = max(unseen, self.smoothing * one.is_square)
-        where = ""
-        if one.row:
-            where = f" t = {self.recording.t_start + float(self.recording.t[one.row]):.6g}"
-        elif math.isfinite(motion.ratio) and spins == 5:
-            where = f", if r0 = {motion.b * motion.ratio / self.period:.3g}"
-        return Finding(
-            one,
-            motion,
-            moved,
-            sizes,
-            size,
-            std,
-            bool(is_possible),
-            -float(ndtri(chance / 2)),
-            math.sqrt(_SURE**2 + 2 * math.log(one.tried * CHANCE / self.chance)),
-            gain,
-            chi2,
-            noise,
-            float(np.max(np.abs(moved[:spins]) / stds)),
-            self._shifts(by_one * unseen),
-            std * _SURE > small,
-            where,
-        )
-
-    def _by_channel(self, rest: Array) -> list[Residuals]:
-        """Return residuals by channel, from those over their standard deviations."""
-        one, whole = self.recording, np.full(self.recording.present.shape, np.nan)
-        whole[one.present] = rest
-        found = zip(whole * self.sizes, one.present, self.residuals.values(), strict=True)
-        return [replace(old, t=one.t[x], y=y[x]) for y, x, old in found]
-
-    def _shifts(self, moved: Array) -> dict[str, Array]:
-        """Return relative changes of numbers by changes of parameters; that of r0 may be unseen."""
-        x = self.motion
-        spin = moved[5] / x.r0 if "phi" in self.recording.angles and x.r0 else 0 * moved[0]
-        tilt = x.by_parameters[self.kept, 0, 0] @ moved / x.angles[0, 0]
-        return {"a": moved[0] / x.a, "b": moved[1] / (x.b or math.inf), "r0": spin, "theta0": tilt}
 
     @cached_property
     def late(self) -> Finding | None:
         """Rows that may be lost or doubled, which a fit with a gap decides."""
         found = self.steps[-1]
-        is_hinted = found.sigmas > _MAYBE and found.effect > _MOVED and abs(found.size) > 0.5
+        is_hinted = found.sigmas > _MAYBE and found.effect > 1 and abs(found.size) > 0.5
         return found if is_hinted and not found.is_shown else None
 
     @property
     def name(self) -> str:
         """The best neighbour, and others that explain as much; empty if none is shown."""
-        alike = [x.text for x in self.shown[:3] if x.gain > self.shown[0].gain - _ALIKE]
+        alike = [x.text for x in self.shown[:3] if x.score > self.shown[0].score - _ALIKE]
         return " or ".join(alike)
 
     @cached_property
@@ -465,7 +454,7 @@ class Neighbours:
         A known moment A has none.
         """
         hidden = [x.shifts for x in self.findings if not x.is_shown]
-        hidden += [self._shifts(x.moved[self.kept, np.newaxis]) for x in (self.late,) if x]
+        hidden += [self.relative(x.by_one @ x.sizes[:, np.newaxis]) for x in (self.late,) if x]
         a, b, tilt, r0 = (
             np.concatenate([x[y] for x in hidden]) for y in ("a", "b", "theta0", "r0")
         )
@@ -476,7 +465,7 @@ class Neighbours:
     @property
     def line(self) -> str:
         """The neighbours that move the numbers most, if the recording does not test them."""
-        names = ", ".join(x.one.name for x in self.untested[:_LINES])
+        names = ", ".join(x.one.name for x in self.untested[:5])
         late = f", and maybe {self.late.text}" if self.late else ""
         return f"1 % each of {names}, which the recording cannot show{late}" if names else late[2:]
 
@@ -505,6 +494,6 @@ def neighbours_of(
     turns = np.nan_to_num(abs(b * ratio)) * length / (2 * math.pi)
     count = int(min(max(_POINTS * length, _PER_TURN * turns, 5 * _POINTS), _MOST_POINTS))
     found = Variations(np.array([a, b, *start]), ratio, np.linspace(0, length, count))
-    rest = one.residuals(*motion)
     is_away = np.isfinite(found.slopes).all() and found.sine.min() > _POLE
+    rest = one.residuals(*motion)
     return Neighbours(one, residuals, found, rest, period, **others) if is_away else None

@@ -176,8 +176,9 @@ class Outcome(HasRecord):
         return [x for x in self.reasons if x.kind in ADVICE]
 
     def failures(self) -> list[Reason]:
-        """Return the reasons why the fit has failed; a reading that is good needs no machine."""
-        is_misread = any(x.kind is Kind.READING for x in self.hints)
+        """Return the reasons why the fit has failed; other causes that are sure need no machine."""
+        others = {Kind.READING} if DECAY in self.shown else {Kind.READING, Kind.WINDOWS}
+        is_misread = any(x.kind in others for x in self.hints)
         kept = [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
         return kept or self.failed
 
@@ -246,6 +247,11 @@ class Outcome(HasRecord):
     def shown(self) -> dict[str, Finding]:
         """The neighbours that the recording shows by name, the best first."""
         return {x.one.name: x for x in self.neighbours.shown} if self.neighbours else {}
+
+    @property
+    def late(self) -> Finding | None:
+        """Rows that may be lost from a recording whose fit is good; a fit with a gap decides."""
+        return self.neighbours.late if self.neighbours and not self.failed else None
 
     @property
     def neighbour(self) -> str:
