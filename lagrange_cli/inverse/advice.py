@@ -86,7 +86,11 @@ class Advice:
             return
         if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
-        for texts in (self._times, self._meanings, self._frames, self._aliased, self._parts):
+        readings = [self._times, self._meanings, self._frames, self._aliased]
+        first = next(iter(self.outcome.shown.values()), None)
+        if first and first.one.row:  # a misreading acts in all rows
+            readings = []
+        for texts in (*readings, self._parts):
             yield from (Reason(Kind.READING, x) for x in texts())
         yield from (Reason(Kind.READING, x) for x in self.gap())
         if Kind.MACHINE not in self.kinds:

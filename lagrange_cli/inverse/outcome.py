@@ -35,6 +35,8 @@ _UNITS = {
 }
 _FILTERED = 1e-4
 """Least share of the nutation, lost to a filter, that a note reports."""
+_LENGTHS = 1.2
+"""Ratio of lengths of a quaternion that noise does not make."""
 PERCENT = "_percent"
 """Ending of the keys of relative errors of elementary formulas."""
 GOOD, STEADY, FAILED = "good", "good, no nutation", "failed"
@@ -203,7 +205,14 @@ class Outcome(HasRecord):
         if marker is not None and (pivot := pivot_of(marker)) is not None:
             where = f"the pivot is at {pivot}: subtract it" if str(pivot) else "is it at the pivot?"
             varies = "the distance of the marker from the origin varies with its direction"
-            yield Reason(Kind.PIVOT, f"{varies}: {where}")
+            yield Reason(Kind.DATA, f"{varies}: {where}")
+        lengths = np.linalg.norm(
+            self.recording.source.given.get("quaternion", np.ones((1, 4))), axis=1
+        )
+        least, most = np.nanmin(lengths), np.nanmax(lengths)
+        if most > _LENGTHS * least:
+            text = f"the length of the quaternion varies from {least:.3g} to {most:.3g}"
+            yield Reason(Kind.DATA, f"{text}, as if each component was smoothed alone")
 
     def _misfits(self) -> Iterator[Reason]:
         """Yield why the motion does not match the recording."""

@@ -11,8 +11,8 @@ from ..errors import Message
 class Kind(IntEnum):
     """What is wrong, the plainest first, and advice at the end."""
 
-    PIVOT = auto()
-    """The origin of a marker is not the pivot."""
+    DATA = auto()
+    """The origin of a marker is not the pivot, or a quaternion has no length of 1."""
     ROWS = auto()
     """Rows are repeated or lost."""
     OPEN = auto()
@@ -41,7 +41,7 @@ class Kind(IntEnum):
 
 NEEDS_ADVICE = {Kind.IMPOSSIBLE, Kind.MACHINE, Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS}
 """Kinds that a mistake in the recording may cause."""
-SAY_WHAT_TO_DO = {Kind.PIVOT, Kind.ROWS}
+SAY_WHAT_TO_DO = {Kind.DATA, Kind.ROWS}
 """Kinds with a remedy of their own, beside which no other advice is sought."""
 MISFITS = {Kind.MOTION, Kind.OUTLIER, Kind.RESIDUALS, Kind.SIGMA}
 """Kinds of a motion that does not match the recording."""

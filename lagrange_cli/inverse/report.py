@@ -55,12 +55,13 @@ def fit_report(
     numbers = outcomes[0].numbers
     errors = {x: y * abs(numbers[x].value) for x, y in outcomes[0].model_errors.items()}
     fields[2:2] = [Field("model", "model", is_text=True)] * bool(errors)
+    doubt = "not determined: " * (outcomes[0].is_open and outcomes[0].inputs is not None)
     rows = [
         SimpleNamespace(
             key=key,
             value=str(x),
             model=f"{errors[key]:.2g}" if key in errors else "",
-            meaning=x.meaning,
+            meaning=doubt + x.meaning,
         )
         for key, x in numbers.items()
         if not key.endswith(PERCENT)
