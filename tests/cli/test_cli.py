@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import random
 import re
@@ -15,7 +14,6 @@ import numpy as np
 import pytest
 from conftest import ROOT, Lagtop, Solved, assert_one_line, dicts
 from lagtop import Top, solve
-from pyarrow import parquet
 from test_frozen import KEYS as FROZEN_KEYS
 
 from lagrange_cli import errors
@@ -170,18 +168,6 @@ def test_grids_of_times(line: str, times: list[float], lagtop: Lagtop) -> None:
     text = lagtop("table", *line.split()).stdout
     assert text.splitlines()[0] == "t,theta_deg,phi_deg,psi_deg"
     assert [row[0] for row in rows(text)] == pytest.approx(times, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    "line", ["solve", "find --r0 10:200 T_precession=2", "scenes", "jacobi --k 2"]
-)
-def test_parquet_holds_the_rows_of_any_document(line: str, lagtop: Lagtop) -> None:
-    written = lagtop(*line.split(), "--format", "parquet").stdout_bytes
-    found = parquet.read_table(io.BytesIO(written)).to_pylist()
-    lines = lagtop(*line.split(), "--format", "ndjson").stdout.splitlines()
-    assert [
-        {x: json.loads(y)[x] for x in row} for row, y in zip(found, lines, strict=True)
-    ] == found
 
 
 def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas
 import pyarrow as pa
 import pytest
 from pyarrow import parquet
@@ -57,20 +56,6 @@ def test_a_pipe_that_does_not_wait_is_read_whole(monkeypatch: pytest.MonkeyPatch
         thread.start()
         assert read("-")["t"][:, 0].tolist() == [0, 1]
     thread.join()
-
-
-def test_missing_numbers_are_nan_and_times_may_run_backwards(tmp_path: Path) -> None:
-    (tmp_path / "a.csv").write_text("t,theta,note\n0,1,x\n-1,,y\n-2,nan,z\n")
-    assert np.isnan(read(tmp_path / "a.csv")["theta"][:, 0]).tolist() == [False, True, True]
-    (tmp_path / "a.json").write_text('{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":null}\n{"t":2}\n')
-    assert np.isnan(read(tmp_path / "a.json")["axis"]).sum(axis=1).tolist() == [0, 3, 3]
-
-
-@pytest.mark.parametrize("orient", ["columns", "index", "records"])
-def test_json_of_pandas_in_every_order_with_names(orient: Any, tmp_path: Path) -> None:
-    frame = pandas.DataFrame({"t": range(12), "theta": range(30, 42)})
-    frame.to_json(tmp_path / "a.json", orient=orient)
-    assert read(tmp_path / "a.json")["theta"][:, 0].tolist() == [*range(30, 42)]
 
 
 def test_every_quantity_can_be_named_as_a_whole() -> None:
