@@ -8,6 +8,7 @@ An invalid top gets an `error` and no numbers.
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -36,6 +37,8 @@ _DEGREE = Bounded(180 / np.pi, None, EPS, positive=True)
 _LEAST, _MOST = 1e-280, 1e280
 """Sizes between which no rounding error is lost."""
 Rows = NDArray[np.intp]
+Lost = dict[tuple[Regime | None, bool], dict[str, list[Rows]]]
+"""Rows whose bounds are too wide, by group and key."""
 Columns = dict[str, ResultColumn]
 
 
@@ -93,6 +96,7 @@ def with_radii(keys: Sequence[str], *, radii: bool) -> list[str]:
     return [*keys, *(f"{key}{RADIUS}" for key in keys if radii and bare_name(key) in LINES)]
 
 
+@np.errstate(all="ignore")  # what an overflow or a 0/0 has touched is not trusted
 def records(
     block: Tops, keys: Iterable[str], *, are_bodies: bool
 ) -> tuple[Columns, dict[int, str], int]:
@@ -104,45 +108,47 @@ def records(
     columns: Columns = {
         key: np.full(block.size, None if key in TEXTS else np.nan) for key in dict.fromkeys(keys)
     }
-    errors, not_bodies = dict(block.errors), 0
-    later: dict[Any, dict[str, list[Rows]]] = {}
-    alone: dict[int, list[str]] = {}
-    with np.errstate(all="ignore"):  # what an overflow or a 0/0 has touched is not trusted
-        for first in range(0, block.size, _TOGETHER):
-            rows = np.arange(first, min(first + _TOGETHER, block.size))
-            tops = _taken(block, rows)
-            known = tops.known(columns)
-            for key, x in known.items():
-                columns[key][_span(rows)] = x
-            sought = [x for x in columns if x not in {*known, "error"} and not x.endswith(RADIUS)]
-            not_body = first + np.flatnonzero(tops.numbers["C"] > 2 * tops.numbers["A"])
-            not_bodies += not_body.size
-            if are_bodies:
-                errors |= dict.fromkeys(not_body.tolist(), _NO_BODY)
-            fine = np.ones(rows.size, dtype=np.bool_)
-            fine[[row - first for row in errors if first <= row < first + rows.size]] = False
-            for group, mask in tops.groups().items():
-                mine = np.flatnonzero(mask & fine)
-                fine &= ~mask
-                if not mine.size:
-                    continue
-                of = ArrayNumbers(tops.part(_span(mine)), group[0])
-                for key in [*sought, *["psidot0"] * (group[0] is Regime.STEADY)]:
-                    lost = _filled(of, key, first + mine, True, columns)
-                    if lost.size:
-                        later.setdefault(group, {}).setdefault(key, []).append(lost)
-            alone |= {first + row: [*sought] for row in np.flatnonzero(fine).tolist()}
-        for (regime, _), lost_rows in later.items():
-            left = {key: np.concatenate(x) for key, x in lost_rows.items()}
-            every = np.unique(np.concatenate([*left.values()]))
-            for start in range(0, every.size, _TOGETHER):
-                rows = every[start : start + _TOGETHER]
-                of = ArrayNumbers(_taken(block, rows), regime, pairs=True)
-                for key, mine in left.items():
-                    for row in _filled(of, key, rows, np.isin(rows, mine), columns).tolist():
-                        alone.setdefault(row, []).append(key)
-    _solve(block, dict(sorted(alone.items())), columns, errors)
+    errors, not_bodies, alone = dict(block.errors), 0, dict[int, list[str]]()
+    lost: Lost = defaultdict(lambda: defaultdict(list))
+    for first in range(0, block.size, _TOGETHER):
+        rows = np.arange(first, min(first + _TOGETHER, block.size))
+        tops = _taken(block, rows)
+        known = tops.known(columns)
+        for key, x in known.items():
+            columns[key][_span(rows)] = x
+        heavy = rows[tops.numbers["C"] > 2 * tops.numbers["A"]]
+        not_bodies += heavy.size
+        if are_bodies:
+            errors |= dict.fromkeys(heavy.tolist(), _NO_BODY)
+        sought = [x for x in columns if x not in {*known, "error"} and not x.endswith(RADIUS)]
+        fine = ~np.isin(rows, [*errors])
+        for group, mask in tops.groups().items():
+            mine = np.flatnonzero(mask & fine)
+            fine &= ~mask
+            if not mine.size:
+                continue
+            of = ArrayNumbers(tops.part(_span(mine)), group[0])
+            for key in [*sought, *["psidot0"] * (group[0] is Regime.STEADY)]:
+                if (left := _filled(of, key, first + mine, True, columns)).size:
+                    lost[group][key].append(left)
+        alone |= dict.fromkeys(rows[fine].tolist(), sought)
+    _solve(block, alone | _lost_in_pairs(block, lost, columns), columns, errors)
     return columns, errors, not_bodies
+
+
+def _lost_in_pairs(block: Tops, lost: Lost, columns: Columns) -> dict[int, list[str]]:
+    """Fill rows that are lost in doubles, and return the keys of those that only `solve` has."""
+    alone: dict[int, list[str]] = defaultdict(list)
+    for (regime, _), found in lost.items():
+        left = {key: np.concatenate(rows) for key, rows in found.items()}
+        every = np.unique(np.concatenate([*left.values()]))
+        for start in range(0, every.size, _TOGETHER):
+            rows = every[start : start + _TOGETHER]
+            of = ArrayNumbers(_taken(block, rows), regime, pairs=True)
+            for key, mine in left.items():
+                for row in _filled(of, key, rows, np.isin(rows, mine), columns).tolist():
+                    alone[row].append(key)
+    return alone
 
 
 _NO_BODY = "C must be <= 2 A (no rigid body has more)"
@@ -168,7 +174,7 @@ def _solve(
 ) -> None:
     """Fill the keys of some rows by `solve`, and their errors."""
     units = Units(radians=any(key.endswith("_rad") for key in columns))
-    for row, names in wanted.items():
+    for row, names in sorted(wanted.items()):
         try:
             motion = solve(_taken(block, np.array([row])).one(0))
             record, beyond = record_in_range(motion, radii=True, units=units, keys=names)
