@@ -23,6 +23,8 @@ EPS = 2.0**-53 * (1 + 2.0**-20)
 """The relative error of a rounding to a double, and a millionth of it."""
 PAIR_EPS = 2.0**-100
 """A few times that of an operation on pairs; of a sum, relative to the sizes of its terms."""
+LOST = 2.0**-60
+"""Relative error of a pair of doubles above which another form of it is tried."""
 Operand = Any
 """Bounded numbers, or an exact number."""
 
@@ -217,9 +219,8 @@ def choose(condition: Mask, yes: Bounded, no: Bounded) -> Bounded:
 
 
 def best(x: Bounded, other: Callable[[], Bounded]) -> Bounded:
-    """Return numbers, and those with a relative error of more than 2^-60 from another form of them,
-    if its error is smaller."""
-    lost = ~(x.error <= 2.0**-60 * x.size)
+    """Return numbers, and the lost ones from another form of them if its error is smaller."""
+    lost = ~(x.error <= LOST * x.size)
     if not lost.any():
         return x
     y = other()

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..arithmetic.bounded import (
     EPS,
+    LOST,
     Bounded,
     atan2,
     best,
@@ -41,9 +42,6 @@ _FINE = 0.9 * GOOD
 """Relative error up to which a mean rate is good enough for what is computed from it."""
 _RELEASED, _FROM_PAIRS = 64 * EPS, 8 * EPS
 """Relative errors up to which the gaps of tops are good enough, released ones and others."""
-_FROM_CUBIC = 2.0**-60
-"""Relative error of the distances of u1 and u3 from the upper pole above which another cubic is
-tried."""
 _NEWTON_STEPS, _STEPS_IN_PAIRS, _MEAN_STEPS, _AGM_STEPS = 100, 2, 11, 16
 
 
@@ -314,8 +312,11 @@ class ArrayNumbers(dict[str, Any]):
             return self._gaps_of_pendulums()
         if self.regime is None:
             return self._gaps_of_any_start()
-        far = self._root(released_root(0.5 * (b * b) - a * u0, a * sine))
-        fall, square = a * (sine * sine) / far, b * b
+        # u0 is a root: the others are those of X^2 - 2 half X - (a sin)^2 in X = a (u - u0)
+        half, a_sine, square = 0.5 * (b * b) - a * u0, a * sine, b * b
+        more = sqrt(half * half + a_sine * a_sine) + abs(half)
+        far = self._root(choose(half.doubles >= 0, more, a_sine * a_sine / more))
+        fall = a_sine * sine / far
         above_u2, below_u2 = above + fall, square * below / (far + a * below)
         a_above_u3 = square * above / above_u2
         return Gaps(zero, fall, far, above, above_u2, below, below_u2, a_above_u3)
@@ -355,7 +356,7 @@ class ArrayNumbers(dict[str, Any]):
         a_above_u3 = best(a_above_u3, lambda: north * north / (above_u1 * above_u2))
         below_u2 = best(below - fall, lambda: south * south / (below_u1 * (far + a * below)))
         found = Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
-        lost = ~(relative_errors(above_u1) + relative_errors(a_above_u3) <= _FROM_CUBIC)
+        lost = ~(relative_errors(above_u1) + relative_errors(a_above_u3) <= LOST)
         if not lost.any():
             return found
         past = energy - a * above  # alpha - a
@@ -569,19 +570,3 @@ def largest_root(c2: Bounded, c1: Bounded, c0: Bounded) -> Bounded:
     changes = 2 * error * (6 * x + 2 * abs(b2) + 12 * error) + of_slope
     certain = (slope > 0) & (changes <= 0.01 * slope)
     return Bounded(root, np.where(certain, 1.02 * error, np.inf), positive=True)
-
-
-def released_root(half: Bounded, a_sine: Bounded) -> Bounded:
-    """Return a (u3 - u0) after release from rest, where u0 is a root and X^2 - 2 half X - (a sin)^2
-    has the others.
-
-    An error e of `half` makes the relative error e/r, r the root of its square and the other one; a
-    relative error of a sin counts twice at most.
-    """
-    square = (a_sine * a_sine).value
-    root = root_of(half.value * half.value + square)
-    more = root + abs(half.value)
-    pick: Any = DoubleDouble.choose if isinstance(root, DoubleDouble) else np.where
-    value = pick(half.doubles >= 0, more, square / more)
-    relative = half.error / size_of(root) + 2 * relative_errors(a_sine) + 6 * unit_of(root)
-    return Bounded(value, relative * size_of(value), positive=True)
