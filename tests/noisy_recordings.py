@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from engines import Array, Body, dop853
 from lagtop import Top, fit
-from scipy.integrate import solve_ivp
+from machines import gimballed
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.inverse.measured import Measured, measured
@@ -72,16 +72,6 @@ def assert_true(outcome: Outcome, truth: Mapping[str, float], *, least: int = 2)
 
 
 def slowed(time: float, t: Array) -> dict[str, Array]:
-    """Return the angles of TOP if friction slows its spin as exp(-t/time), by Euler's equations."""
-    half, ratio = TRUTH["a"] / 2, TRUTH["b"] / TRUTH["r0"]
-
-    def slope(now: float, state: Array) -> list[float]:
-        theta, rate, _, turn, _ = state
-        spin, u, sine = 52.36 * math.exp(-now / time), math.cos(theta), math.sin(theta)
-        up = (turn * turn * u - ratio * spin * turn + half) * sine
-        around = (ratio * spin - 2 * turn * u) * rate / sine
-        return [rate, up, turn, around, spin - turn * u]
-
-    start = [75 * DEGREE, 0.0, 0.0, 0.0, 0.0]
-    flow = solve_ivp(slope, (0, t[-1]), start, "DOP853", t, rtol=1e-10, atol=1e-10)
-    return {"theta": flow.y[0], "psi": flow.y[2], "phi": flow.y[4]}
+    """Return the angles of TOP if friction slows its spin as exp(-t/time)."""
+    start = np.array([75 * DEGREE, 0.0, 0.0])
+    return gimballed(TRUTH["a"], TRUTH["b"], TRUTH["r0"], start, t, drag=t[-1] / time)

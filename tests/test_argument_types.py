@@ -1,4 +1,4 @@
-"""Arguments of any type: LagtopError or TypeError, and nothing else; lists of names."""
+"""Arguments of any type: LagtopError or TypeError, and nothing else."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from lagtop import LagtopError, Top, solve
-
-from lagrange_cli.names import check_names, split_names
 
 ODD: list[Any] = [None, True, "x", 10**400, float("nan"), object(), [1, 2], np.zeros(2), {}]
 TOP, MOTION = Top(), solve(Top())
@@ -58,15 +56,3 @@ def test_odd_arguments(call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
             CALLS[call](odd)
     assert [os.fstat(descriptor) for descriptor in (0, 1, 2)]  # none was closed
     assert list(tmp_path.iterdir()) == []
-
-
-# Lists of names are refused in the same way everywhere
-
-
-KNOWN = ["alpha", "beta", "T_nutation"]
-
-
-def test_names_that_are_fine() -> None:
-    assert check_names("keys", ("beta", "alpha"), KNOWN) == ["beta", "alpha"]
-    assert check_names("keys", dict.fromkeys(KNOWN), KNOWN) == KNOWN  # type: ignore[arg-type]
-    assert split_names("alpha, bottom pass,beta") == ["alpha", "bottom pass", "beta"]

@@ -21,7 +21,7 @@ import numpy as np
 import pint
 import pytest
 from click.testing import CliRunner, Result
-from lagtop import LagtopError, Top, solve
+from lagtop import LagtopError, Top, sensitivities, solve
 from scenes import UNIT
 from uncertainties import ufloat
 
@@ -85,6 +85,12 @@ def row(top: Top, t: str, columns: str) -> str:
     return " ".join(number.value for number in table.row(Fraction(t)))
 
 
+def derivative(top: Top, key: str, name: str) -> str:
+    """Return a derivative by an input to 11 digits."""
+    found = sensitivities(top, [key]).derivatives[key][name]
+    return str(found if found is None else f"{found:.11g}")
+
+
 def uncertain(text: str) -> str:
     """Return an uncertain number as fractions, read as one value and as the points of a range."""
     value = values.parse_value("m", text, uncertain=True)
@@ -114,7 +120,7 @@ def columns_known(header: str) -> str:
 
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
 NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
-NAMES |= {x.__name__: x for x in (sentence, unit, numbers, digits, row, uncertain)}
+NAMES |= {x.__name__: x for x in (sentence, unit, numbers, digits, row, derivative, uncertain)}
 NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 

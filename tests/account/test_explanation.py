@@ -166,12 +166,6 @@ def test_small_differences_are_named_in_order() -> None:
     assert named == ["u1 - u2", "β + b", "u2 - u1", "1 + u2"]
 
 
-def test_a_number_beyond_the_doubles_has_digits_in_solve(lagtop: Lagtop) -> None:
-    """`explain` itself has no --digits."""
-    result = lagtop("explain", "precession_rate_elementary", "--g", 5e-324)
-    assert result.stderr.endswith(" in magnitude, got 3.593e-326: use solve --digits N\n")
-
-
 def test_a_missing_number_has_no_value(lagtop: Lagtop) -> None:
     shown = lagtop("explain", "K", "--theta0", 0).stdout
     assert "missing  K, k: undefined" in shown

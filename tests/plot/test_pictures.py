@@ -17,6 +17,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from PIL import Image
 
+from lagrange_cli.plot import SHEET
 from lagrange_cli.plot.film import film_figure, pace_of
 from lagrange_cli.plot.pictures import (
     PICTURES,
@@ -399,15 +400,17 @@ def test_a_film_has_the_frames_of_its_duration(lagtop: Lagtop, tmp_path: Path) -
         assert film.size == (192, 208)
 
 
-SAVED = [*((kind, "svg") for kind in PICTURES), ("phase", "png"), ("phase", "pdf")]
+SAVED = [([*SHEET["all"]], "svg"), (["map"], "svg"), (["phase"], "png"), (["phase"], "pdf")]
 
 
-@pytest.mark.parametrize(("kind", "fmt"), SAVED)
-def test_every_picture_is_saved_whole(kind: str, fmt: str) -> None:
+@pytest.mark.parametrize(("kinds", "fmt"), SAVED)
+def test_every_picture_is_saved_whole(kinds: list[str], fmt: str) -> None:
     """No artist warns, nothing is cut, and the file holds a title and a description."""
+    assert {*PICTURES} == {*SHEET["all"], "map"}
     spins: Any = {"key": "K", "x": ("r0", [40, 60]), "y": ("theta0", [0.5, 1])}
-    figure = drawn(kind, solve(Top()), **spins if kind == "map" else {})
     with styled(LIGHT):
+        options = Options(**spins if "map" in kinds else {})
+        figure = figure_of([("", solve(Top()))], kinds, options, None)
         data = figure_bytes(figure, fmt, 40, "a title", "two < three")
     assert data[:4] in {b"\x89PNG", b"<?xm", b"%PDF"}
     assert fmt != "svg" or b"two &lt; three" in data
