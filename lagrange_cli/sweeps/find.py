@@ -263,7 +263,7 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
     least = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
     least = least[np.argsort(size[least])][:_EXTREMA]  # may hide two roots: scanned more finely
     finer = np.linspace(x[least - 1], x[least + 1], 2 * _FINER + 1)
-    x = np.unique([*x, *finer.ravel()])
+    x = np.array(sorted({*x.tolist(), *finer.ravel().tolist()}))  # np.unique would import numpy.ma
     y, (target,) = search.swept(x[:, np.newaxis])[:, 0], search.targets.values()
     near = np.abs(y) <= _SWEPT * abs(target)
     if (near[:-2] & near[1:-1] & near[2:]).any():
