@@ -8,15 +8,14 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from conftest import Lagtop, tables_of
+from conftest import Lagtop
 from errata import FIGURES, round_alike, true_values
-from lagtop import LagtopError, Top, compare, fit, solve
+from lagtop import LagtopError, Top, solve
 from matplotlib.figure import Figure
 from record_reference import reference_record
 from scenes import EVERY_KIND, UNIT
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.output.document import shown_text
 from lagrange_cli.solver.keys import FURTHER_KEYS, derivation_keys
 
 SEPARATRIX = EVERY_KIND["separatrix in a plane"]
@@ -66,22 +65,6 @@ def test_names_of_a_motion_are_public_and_known() -> None:
     assert {"T_nutation", "rotation", "top", "regime", "record"} <= set(names)
     assert [name for name in names if name.startswith("_")] == []
     assert all(hasattr(MOTION, name) for name in names)
-
-
-@pytest.mark.slow
-def test_a_fit_and_a_judgement_show_themselves() -> None:
-    t = np.linspace(0, 1, 60)
-    theta, phi, psi = MOTION.angles(t)
-    noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, t.size))
-    outcome = fit(t, theta=theta + noise[0], phi=phi + noise[1], psi=psi + noise[2])
-    comparison = compare(MOTION, t, theta=theta + 1e-6, phi=phi, psi=psi)
-    for shown in (outcome, comparison):
-        figure = shown.plot(Figure())
-        assert len(figure.axes) == (6 if shown is outcome else 1)
-        assert all(axes.lines for axes in figure.axes)
-        assert shown._repr_markdown_().startswith(f"Verdict: {shown.verdict}\n\n")
-        ((_, *rows),) = tables_of(shown._repr_markdown_())
-        assert dict(rows) == {x: shown_text(y) for x, y in shown.record().items() if y is not None}
 
 
 @pytest.mark.parametrize(("sign", "tilt"), [(1, 1.0), (-1, 30.0), (1, 179.0)])

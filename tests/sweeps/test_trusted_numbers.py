@@ -115,27 +115,26 @@ CANCELLING: dict[str, list[Scene]] = {
         EXAMPLE | {"theta0_deg": tilt, "r0": r0}
         for tilt, r0 in ((90, 1e10), (90.5, 50), (89.5, 50))
     ],
+    "sizes beyond 1e30": [
+        {**dict.fromkeys("mAC", 1e-40), "s": 1, "g": 1, "r0": 50, "theta0_deg": 30}
+    ],
+    "the least spin of the remark": [
+        UNIT | {"r0": r0, "theta0_deg": 30} for r0 in (10.0, math.nextafter(10.0, 0.0), -1e9)
+    ],
+    "a start at u2": [
+        EXAMPLE | {"r0": 50, "psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151}
+    ],
+    "next to the vertical": [EXAMPLE | {"r0": r0, "theta0_deg": 1e-100} for r0 in (50, 1e70)],
+    "a tilt in radians": [
+        EXAMPLE | {"r0": 50, "theta0_rad": tilt, "thetadot0": rate}
+        for tilt, rate in ((0.0, 0.0), (3.141592, -2.0))
+    ],
 }
 
 
 @pytest.mark.parametrize("name", CANCELLING)
 def test_numbers_whose_parts_cancel(name: str) -> None:
     assert_trusted(CANCELLING[name], len(CANCELLING[name]))
-
-
-SPECIAL: list[Scene] = [
-    *(EXAMPLE | x for x in ({"theta0_rad": 0}, {"theta0_rad": 3.141592, "thetadot0": -2})),
-    *({"m": 1e-40, "A": 1e-40, "C": 1e-40, "s": 1, "g": 1}, EXAMPLE | {"r0": 1e70}),
-    EXAMPLE | {"theta0_deg": 1e-100},
-    *(UNIT | {"r0": r0, "theta0_deg": 30} for r0 in (10.0, math.nextafter(10.0, 0.0), -1e9)),
-    EXAMPLE | {"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},
-]
-
-
-@pytest.mark.parametrize("scene", SPECIAL)
-def test_special_tops(scene: Scene) -> None:
-    """A tilt in radians, sizes beyond 1e30, the least spin of the remark, a start at u2."""
-    assert_trusted([{"r0": 50.0, **scene}], 1)
 
 
 RATES = random.Random("steady")
