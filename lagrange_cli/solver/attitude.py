@@ -154,40 +154,31 @@ class Nutation:
         return theta1, theta2
 
 
-class ConstantTilt:
-    """The constants of a motion at constant tilt."""
-
-    start = arb(0), arb(0)
-    rate = h0 = arb(0)
-    """A constant tilt is a swing at the rate 0."""
-
-    def __init__(self, facts: Facts, of: Names) -> None:
-        self.precession = arb(0) if facts.vertical else of["psidot0"]
-        self.spin = of["r0"] - self.precession * of["u0"]
-        self.unit = _time_of_a_radian(self.spin, self.precession)
-        self.x, self.y, *_ = start_of(facts, of)
-
-    def at(self, t: arb) -> Attitude:
-        """Return the attitude at a time."""
-        return Attitude(self.x, self.y, arb(0), arb(0), arb(0))
-
-
 class SingleSwing:
-    """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t."""
+    """The constants of a motion on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = h0 + rate t.
+
+    A constant tilt is a swing at the rate 0.
+    """
 
     def __init__(self, facts: Facts, of: Names) -> None:
-        u0, u2, self.direction = of["u0"], of["u2"], _start_direction(facts)
-        self.precession = of["b"] / 2
-        self.spin = of["r0"] - self.precession
-        self.x = arb(0) if facts.over_bottom else root((1 + u2) / 2)
-        """cos(theta_max/2)."""
-        self.y = root((1 - u2) / 2) * (-1 if facts.spin < 0 else 1)
-        """sin(theta_max/2), with the sign of b."""
-        self.rate = root(of["wide"]) / 2
-        self.h0 = arb(0)
-        """h at t = 0, exactly 0 if the axis is lowest then."""
-        if not facts.turning:
-            self.h0 = -self.direction * root((u0 - u2) / (1 - u0)).asinh()
+        u0, u2 = of["u0"], of["u2"]
+        self.rate = self.h0 = arb(0)
+        """h0 is exactly 0 if the axis is lowest at t = 0."""
+        self.direction = 0 if facts.steady else _start_direction(facts)
+        if facts.steady:
+            self.precession = arb(0) if facts.vertical else of["psidot0"]
+            self.spin = of["r0"] - self.precession * u0
+            self.x, self.y, *_ = start_of(facts, of)
+        else:
+            self.precession = of["b"] / 2
+            self.spin = of["r0"] - self.precession
+            self.x = arb(0) if facts.over_bottom else root((1 + u2) / 2)
+            """cos(theta_max/2)."""
+            self.y = root((1 - u2) / 2) * (-1 if facts.spin < 0 else 1)
+            """sin(theta_max/2), with the sign of b."""
+            self.rate = root(of["wide"]) / 2
+            if not facts.turning:
+                self.h0 = -self.direction * root((u0 - u2) / (1 - u0)).asinh()
         self.unit = _time_of_a_radian(self.spin, self.precession, self.rate)
         self.start = self.turn(self.h0), arb(0)
 
@@ -204,15 +195,13 @@ class SingleSwing:
         return arb.atan2(self.y * side, self.x)
 
 
-Course = Nutation | ConstantTilt | SingleSwing
+Course = Nutation | SingleSwing
 """The constants from which the attitude of any motion follows."""
 
 
 def course_of(facts: Facts, of: Names) -> Course:
     """Return the constants of a motion, from its facts and its numbers in the precision in use."""
-    if facts.steady:
-        return ConstantTilt(facts, of)
-    return SingleSwing(facts, of) if facts.separatrix else Nutation(facts, of)
+    return Nutation(facts, of) if facts.nutates else SingleSwing(facts, of)
 
 
 def _start_direction(facts: Facts) -> int:

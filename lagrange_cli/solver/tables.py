@@ -36,7 +36,7 @@ from ..errors import LagtopError, OutOfRangeError, arg
 from ..names import RADIUS
 from ..top.ranges import EvenPoints, Points
 from ..top.units import DEGREES, Units
-from .attitude import Course, SingleSwing, start_of
+from .attitude import Course, start_of
 from .columns import (
     DEFAULT_COLUMNS,
     FORMULAS,
@@ -282,8 +282,8 @@ class ProvedTable:
         items = {"t": t, "X": at.x, "Y": at.y, "spin": spin, "precession": precession}
         items |= {"spin_wave": at.dphi, "precession_wave": at.dpsi, "tilting": at.tilting}
         formulas = _BALL_FORMULAS
-        if isinstance(course, SingleSwing) and time:
-            formulas, items["swing_rate"] = formulas | _SWING, course.rate
+        if facts.separatrix and time:
+            formulas, items["swing_rate"] = formulas | _SWING, of["swing_rate"]
         return Columns(formulas, _BALLS | self._constants(digits) | items)
 
     def rows(
