@@ -29,7 +29,9 @@ def spread_of(found: Given, motion: Motion) -> Spread:
     spread = Spread(motion, found.stds)
     for name, std in found.stds.items():
         if std and not spread.neighbours(name, 1):
-            raise LagtopError(f"{name} has no possible value {std:g} away: change it", name)
+            raise LagtopError(
+                f"{name} has no possible value {std:g} away: use a smaller uncertainty", name
+            )
     return spread
 
 
