@@ -29,9 +29,8 @@ def spread_of(found: Given, motion: Motion) -> Spread:
     spread = Spread(motion, found.stds)
     for name, std in found.stds.items():
         if std and not spread.neighbours(name, 1):
-            raise LagtopError(
-                f"{name} has no possible value {std:g} away: use a smaller uncertainty", name
-            )
+            wrong = f"{name} has no possible value {std:g} away"
+            raise LagtopError(f"{wrong}: reduce its uncertainty, or leave it out", name)
     return spread
 
 
