@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from ..recordings.recording import Recording
 from ..top.top import Top
 from .differences import ExactMotion, errors, sizes, start_of
 from .engines import engines
-from .mistakes import OPPOSITE, Cause, estimated, of_clock, other_tops, percent, steps
+from .mistakes import OPPOSITE, Cause, estimated, of_clock, other_tops, percent
 from .numbers import Estimate
 
 _EXPLAINS, _MOST = 0.1, 0.3
@@ -85,9 +86,9 @@ class _Search:
     def agrees(self, cause: Cause) -> bool:
         """Return whether the axis of a cause's top moves like the one that is seen.
 
-        It is another axis that is seen if the attitude was misread.
+        It is another axis that is seen if the attitude was misread, or an engine moves no top.
         """
-        if not self.seen or "attitude" in cause.kinds:
+        if not self.seen or cause.kinds & {"attitude", "engine"}:
             return True
         clock = float(np.ptp(self.few(cause, _SOME).t) / (np.ptp(self.run.t) or 1.0))
         return self.seen.is_near((cause.exact or self.given).motion.top, clock)
@@ -98,7 +99,7 @@ class _Search:
         A cause that leaves more than the limit of a trajectory has more rivals.
         """
         enough = min(_EXPLAINS * self.before.max(), limit)
-        found = [x for y in causes for x in self.fitting(y, enough)]
+        found = [x for y in filter(self.agrees, causes) for x in self.fitting(y, enough)]
         found = [x._replace(error=self.error(x, _SOME)) for x in found if not self.spoils(x)]
         rival = _AS_GOOD if limit <= self.limit else _COMPETES
         bound = max(rival * min((x.error for x in found), default=0.0), _ROUNDING)
@@ -122,41 +123,34 @@ class _Search:
         both = [cause.with_other(x) for x in self.written if x.kinds & {"rates", "sense"}]
         return [x for x in both if self.error(x, _FEW) <= enough]
 
-    def groups(self) -> Iterator[tuple[Sequence[Cause], float]]:
+    def groups(self) -> Iterator[tuple[Iterable[Cause], float]]:
         """Yield groups of causes, and the greatest error that each group may leave.
 
         A group is tried if the one before explains nothing.
         """
         none, sign = [Cause()], [x for x in self.tops if x.name.startswith(OPPOSITE)]
-        units = [x for x in self.written if x.kinds & {"clock", "rates"}] + steps()
+        units = [x for x in self.written if x.kinds & {"clock", "rates"}]
         others = [x for x in self.written if x not in units]
-        early = [*self.placed(none), *units, *sign, *self.placed(sign)]
-        near = [*filter(self.agrees, self.tops)]
-        yield [*early, *self.placed(none, in_other=True), *near, *others], self.limit
+        singles = [*units, *self.tops, *others]
+        first = [*self.placed(none), *units, *sign, *self.placed(sign)]
+        yield [*first, *self.placed(none, in_other=True), *singles], self.limit
         inputs = estimated(self.top, self.seen) if self.seen else []
-        singles = [*units, *near, *others]
+        inputs = [*self.rates_of_clock(), *inputs]
         if self.before[0] > self.limit:  # not only the rates are wrong
-            yield [*self.rates_of_clock(), *inputs], self.limit
+            yield inputs, self.limit
             yield from self.shifts()
             two = min(_EXPLAINS**2 * self.before.max(), self.limit)
             yield self.turned(), two
             reverse = other_tops(Top(**self.top.inputs() | {"r0": -self.top.r0}))
-            both = [
-                y._replace(name=f"{y.name}; {x.name}")
-                for x in sign
-                for y in filter(self.agrees, reverse)
-            ]
+            both = [y._replace(name=f"{y.name}; {x.name}") for x in sign for y in reverse]
+            singles = [*filter(self.agrees, singles)]
             yield [*both, *self.placed(singles), *self.placed(singles, in_other=True)], two
-            yield self.pairs([*units, *others]), two
+            parts = [*self.written, *self.tops]
+            pairs = (x.with_other(y) for x, y in combinations(parts, 2) if not x.kinds & y.kinds)
+            yield pairs, two
             yield self.engines()
-        rows = [x for x in [*self.placed(none), *singles] if x.name != BACKWARDS]
-        yield [*filter(self.agrees, rows)], _MOST
-        yield [*filter(self.agrees, [*self.rates_of_clock(), *inputs])], _MOST
-
-    def pairs(self, causes: Sequence[Cause]) -> list[Cause]:
-        """Return two causes of different kinds at once: a misreading, and another one or a top."""
-        both = [(x, y) for i, x in enumerate(causes) for y in [*causes[i + 1 :], *self.tops]]
-        return [*filter(self.agrees, (x.with_other(y) for x, y in both if not x.kinds & y.kinds))]
+        yield [x for x in [*self.placed(none), *singles] if x.name != BACKWARDS], _MOST
+        yield inputs, _MOST
 
     def engines(self) -> tuple[list[Cause], float]:
         """Return engines that move no top, compared with the first rows, and their greatest error.

@@ -104,6 +104,10 @@ class Comparison(HasRecord):
     error: Array = field(default_factory=lambda: np.empty(0), compare=False)
     """Errors of the rows; NaN where the trajectory is lost."""
 
+    def exceeds(self, limit: float) -> bool:
+        """Return whether an error is greater than a limit."""
+        return max(self.error_max or 0.0, self.rates_error_max or 0.0) > limit
+
     def record(self) -> dict[str, Any]:
         """Return the comparison by key."""
         return {name: getattr(self, name) for name in COMPARISON_KEYS}
@@ -182,28 +186,27 @@ def compared(
         raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")
     exact, steps = ExactMotion(motion), step_sizes or repeat(None)
     results = [_measured(exact, *x) for x in zip(runs, steps, strict=False)]
-    wrong = [max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit for x in results]
+    wrong = [x.exceeds(limit) for x in results]
     seen = [estimate(motion.top, x) if y else None for x, y in zip(runs, wrong, strict=True)]
     found = None
     if step_sizes:
         found = convergence([(x.step or 0.0, x.t, x.error) for x in results], limit)
         found = found and named_at_step_0(motion.top, found, step_sizes, seen)
     for i, x in enumerate(results):
-        known, causes = dict[str, Any](), list[Cause]()
+        known, is_other = dict[str, Any](), bool(found and not found.converges)
         if wrong[i] and not (found and found.converges):
             causes = likely_causes(exact, runs[i], limit, seen[i])
             known = _explained(motion.top, seen[i], causes, limit)
+            is_other |= any(y.is_top(limit) for y in causes)
         if found:
             known |= {"order": found.order, "order_error": found.errors[i]}
-        is_other = bool(found and not found.converges) or any(y.is_top(limit) for y in causes)
-        applies = [
-            True,
-            wrong[i] or (x.pivot_slip or 0.0) > limit,
-            wrong[i] and is_other,
-            x.error_start > limit,
-            x.lost_at is not None,
-        ]
-        verdict = [word for word, it in zip(VERDICTS, applies, strict=True) if it][-1]
+        applies = {
+            "drifts": wrong[i] or (x.pivot_slip or 0.0) > limit,
+            "another top": wrong[i] and is_other,
+            "off from the start": x.error_start > limit,
+            "lost": x.lost_at is not None,
+        }
+        verdict = ["fine", *(word for word, it in applies.items() if it)][-1]
         results[i] = replace(x, verdict=verdict, **known)
     return results, found
 
@@ -212,15 +215,13 @@ def _explained(
     top: Top, seen: Estimate | None, causes: list[Cause], limit: float
 ) -> dict[str, Any]:
     """Return the keys of causes, and numbers if no cause brings the error below the limit."""
-    known: dict[str, Any] = {}
-    is_whole = bool(causes) and causes[0].error <= limit
+    known, is_whole = dict[str, Any](), False
     if causes:
-        known = {
-            "cause": "; or ".join(x.name for x in causes),
-            "explained": "most likely" if is_whole else "partly",
-            "cause_error": max(x.error for x in causes),
-            "remedy": joined(filter(None, (x.remedy for x in causes)), " or ") or None,
-        }
+        is_whole = causes[0].error <= limit
+        known["cause"] = "; or ".join(x.name for x in causes)
+        known["explained"] = "most likely" if is_whole else "partly"
+        known["cause_error"] = max(x.error for x in causes)
+        known["remedy"] = joined(filter(None, (x.remedy for x in causes)), " or ") or None
     if seen and seen.is_trusted:
         known |= {"a_ratio": seen.a, "b_ratio": seen.b, "r0_ratio": seen.r0}
     if seen and not is_whole:

@@ -67,12 +67,6 @@ def of_clock(name: str, **change: Any) -> Cause:
     return Cause(name, (Misreading(name, partial(Recording.timed, **change), kind="clock"),))
 
 
-def steps() -> list[Cause]:
-    """Return the steps of an engine that are longer or shorter than its times say."""
-    said = "a step of the engine is {} as long as the times say".format
-    return [of_clock(said(word), factor=x) for word, x in (("twice", 2.0), ("half", 0.5))]
-
-
 def other_tops(top: Top, *, left: bool = False) -> list[Cause]:
     """Return the rows of the table that are tops other than this one.
 
@@ -80,9 +74,9 @@ def other_tops(top: Top, *, left: bool = False) -> list[Cause]:
     """
     found, numbers = [], top.inputs()
     plain = Top(**numbers)  # A and r0 do not depend on other inputs
+    twice = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
     for name, changed in _table(top, left).items():
         turns = {key: changed.pop(key) for key in ("space", "body", "spin") if key in changed}
-        twice = partial(Recording.changed, changes={"rates": lambda x: 2 * x})
         rates = (Misreading(name, twice, kind="rates"),) if name == _HALF else ()
         with suppress(LagtopError):  # there is no such top
             other = plain.replace(**changed)
@@ -155,11 +149,10 @@ def _table(top: Top, left: bool) -> dict[str, dict[str, Any]]:
         "theta0 is doubled": {"theta0_rad": 2 * tilt},
         "theta0 is halved": {"theta0_rad": tilt / 2},
     }
+    lying, factor = {"theta0_rad": math.pi / 2 - tilt}, "(or m or s is wrong by the same factor)"
     if rate:
-        name = "theta0 and its rate are measured from the horizontal"
-        found[name] = {"theta0_rad": math.pi / 2 - tilt}
-    for g in _GRAVITY:
-        found[f"g is {g} (or m or s is wrong by the same factor)"] = {"g": Fraction(g)}
+        found["theta0 and its rate are measured from the horizontal"] = lying
+    found |= {f"g is {g} {factor}": {"g": Fraction(g)} for g in _GRAVITY}
     return found | {
         "theta0 has the wrong sign": {"thetadot0": -rate, **both},
         "theta0 in degrees was taken as radians": {
@@ -167,22 +160,15 @@ def _table(top: Top, left: bool) -> dict[str, dict[str, Any]]:
             "thetadot0": math.copysign(rate, rate * folded),
             **(both if folded < 0 else {}),
         },
-        "theta0 is measured from the horizontal": {
-            "theta0_rad": math.pi / 2 - tilt,
-            "thetadot0": -rate,
-        },
-        "g points upwards": {
-            "theta0_rad": math.pi - tilt,
-            "psidot0": -psidot,
-            "thetadot0": -rate,
-            **over,
-        },
+        "theta0 is measured from the horizontal": lying | {"thetadot0": -rate},
+        "g points upwards": over
+        | {"theta0_rad": math.pi - tilt, "psidot0": -psidot, "thetadot0": -rate},
         # A top with the same a and b, which need be no body: its spin differs by a constant rate.
         "A and C are exchanged": {
             "A": top.C,
             "C": top.C,
-            "r0": Fraction(top.r0) * A / C,
-            "spin": float(Fraction(top.r0) * (1 - A / C)),
+            "r0": r0 * A / C,
+            "spin": r0 * (1 - A / C),
         },
         _HALF: {"A": A / 2, "C": (A + C) / 4}
         | {x: 2 * getattr(top, x) for x in ("r0", "thetadot0", "psidot0")},

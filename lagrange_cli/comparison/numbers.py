@@ -19,11 +19,8 @@ from ..top.top import Top
 
 TRUSTED = 0.01
 """Largest relative residual of the axis with which ratios are printed."""
-_MOST, _ENOUGH, _FIRST = 20_000, 5000, 8
-"""Most rows, the fewest to which more rows are reduced, and the first rows, from which the rates at
-the start follow."""
-_PARTS = 1.0, 0.5, 0.25
-"""Shares of the rows that are tried, from the first one: a strong decay is linear only at first."""
+_MOST, _FIRST = 20_000, 8
+"""Most rows, and the first rows, from which the rates at the start follow."""
 _OPEN, _SAME, _DECAY = 0.2, 2e-3, 1e-3
 """Relative errors: of an undetermined parameter, of one that agrees, of a spin that is constant."""
 _COARSE, _FINE = 0.25, 0.04
@@ -85,7 +82,7 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
     swing, step = abs(b) + math.sqrt(a) + 1e-300, float(np.median(abs(np.diff(run.t))))
     turn = (swing + abs(r0)) * step
     if len(run.t) > _MOST and turn < _FINE:  # rounding errors of close rows hide the motion
-        run = run.few(max(_ENOUGH, math.ceil(len(run.t) * turn / _FINE)))
+        run = run.few(max(_MOST // 4, math.ceil(len(run.t) * turn / _FINE)))
     found = [(x, axis, y) for x, axis in _views(run) if (y := from_spline(x.t, axis))]
     if not found:
         return None
@@ -111,7 +108,8 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
 def _views(run: Recording) -> Iterator[tuple[Observed, Array]]:
     """Yield a motion, its first parts, and the motion about its own figure axis, with the axis."""
     seen = run.observed(slice(_MOST))
-    views = [run.observed(slice(int(x * len(seen.t)))) for x in _PARTS]
+    parts = (len(seen.t) // x for x in (1, 2, 4))  # a strong decay is linear only at first
+    views = [run.observed(slice(x)) for x in parts]
     if seen.quaternion is not None and (frames := own_frames(seen)):
         turn = rotations.of_matrix(frames[1].reshape(1, 9))[0][0]
         views.append(seen.turned(rotations.IDENTITY, turn))
@@ -162,8 +160,7 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"{said}: {smaller}check the equations; for measured data, use fit"
         return
     same = max(_SAME, 3 * axis.residual)
-    ratios = {x: getattr(found, x) for x in ("a", "b", "r0")}
-    known = {x: y for x, y in ratios.items() if y is not None}
+    known = {x: y for x in ("a", "b", "r0") if (y := getattr(found, x)) is not None}
     off = {x: y for x, y in known.items() if abs(y - 1) > same}
     lean = math.acos(min(1.0, axis.up[2])) if found.a and axis.a_spread < same * axis.a else 0.0
     is_upright = not lean > max(0.02, same)
@@ -176,7 +173,7 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"the motion is that of the given top, to {most:.2%}: use smaller steps"
     yield from moved
     given = dict(zip("ab", a_and_b(top), strict=True))
-    if hidden := [x for x, y in given.items() if y and ratios[x] is None]:
+    if hidden := [x for x, y in given.items() if y and x not in known]:
         yield f"this motion does not show {' and '.join(hidden)}"
     if found.decay:
         yield f"the spin decays by {found.decay:.1%} per unit of time"

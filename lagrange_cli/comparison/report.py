@@ -48,13 +48,14 @@ def comparison_report(
         "regime": motion.regime,
         "errors": f"in radians, relative for rates; greatest over all rows; fine up to {limit:g}",
     }
-    lines = [line for x in results for line in _conclusions(x, limit, found)]
+    lines = [y for x in results for y in _conclusions(x, limit, is_right=found and found.converges)]
     if found is not None:
         lines.append(found.sentence)
     return Report(conditions, fields_of([*COMPARISON_KEYS], *shown), results, lines)
 
 
-def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iterator[str]:
+def _conclusions(x: Comparison, limit: float, *, is_right: bool | None) -> Iterator[str]:
+    """Yield what was read, the verdict, and why; the error of a right top falls with the step."""
     if x.columns:
         yield f"Columns: {x.columns}." + f" Not used: {x.unused}." * bool(x.unused)
         yield from (f"Read {line}." for line in (x.read or "").split("; "))
@@ -65,55 +66,54 @@ def _conclusions(x: Comparison, limit: float, found: Convergence | None) -> Iter
         yield f"The norm of its quaternion or matrix differs from 1 by up to {x.norm_error:.1e}."
     if (slip := x.pivot_slip or 0.0) > limit:
         yield f"The pivot slips: its distance from the centre of mass changes by up to {slip:.1%}."
-    yield from _causes(x, limit, is_right=bool(found and found.converges))
-
-
-def _causes(x: Comparison, limit: float, *, is_right: bool) -> Iterator[str]:
-    """Yield the cause of an error, or else what agrees and what the motion shows."""
-    is_wrong = max(x.error_max or 0.0, x.rates_error_max or 0.0) > limit
+    is_unexplained = x.exceeds(limit) and not is_right
     if x.cause is not None:
-        words = "Most likely cause" if x.explained == "most likely" else "Probable cause"
         remedy = f" ({marked(x.remedy)})" if x.remedy else ""
         error = f"With that corrected, the error is at most {x.cause_error:.1e}"
-        yield Message(f"{words}: {x.cause}{remedy}. {error}.")
+        yield Message(f"{_capital(_cause(x))}{remedy}. {error}.")
     elif rows := _few_rows(x, limit):
         yield rows
-    elif is_wrong and not is_right:
+    elif is_unexplained:
         yield from _channels(x, limit)
         if x.a_ratio is None and x.b_ratio is None:
             yield _hint(x)
-    if x.numbers is not None and is_wrong and not is_right:
-        yield f"{x.numbers[0].upper()}{x.numbers[1:]}."
+    if x.numbers is not None and is_unexplained:
+        yield f"{_capital(x.numbers)}."
+
+
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]
+
+
+def _cause(x: Comparison) -> str:
+    return f"{'most likely' if x.explained == 'most likely' else 'probable'} cause: {x.cause}"
 
 
 def _hint(x: Comparison) -> Message:
     """Return what to check if no top explains the motion."""
-    said = "None of the known causes explains the error: check the inputs"
-    if x.verdict == "drifts":
-        said += ", and compare runs with other step sizes"
     known = {"align": x.axis_error_max, "quaternion_order": x.attitude_error_max}
     known["rates_frame"] = x.rates_error_max
-    names = [arg(name) for name, y in known.items() if y is not None]
-    if names and x.verdict != "drifts":
-        said += (
-            f", and the conventions of the attitude and the rates ({marked(joined(names, ', '))})"
-        )
-    return Message(f"{said}.")
+    names = ", ".join(arg(name) for name, y in known.items() if y is not None)
+    others = f", and other conventions of the attitude and the rates ({names})" if names else ""
+    if x.verdict == "drifts":
+        others = ", and runs with other step sizes"
+    return Message(f"None of the known causes explains the error: check the inputs{others}.")
 
 
 def _channels(x: Comparison, limit: float) -> Iterator[str]:
     """Yield which quantities agree if only some are wrong."""
     names = {"theta": "theta", "phi": "phi", "psi": "psi", "rates": "the rates"}
-    known = {name: getattr(x, f"{key}_error_max") for key, name in names.items()}
-    right = {name: y for name, y in known.items() if y is not None and y <= limit}
-    wrong = [name for name, y in known.items() if y is not None and y > limit]
+    known = {key: y for key in names if (y := getattr(x, f"{key}_error_max")) is not None}
+    right, wrong = ([key for key in known if (known[key] > limit) == y] for y in (False, True))
     if not right or not wrong:
         return
-    agree = f"{joined(right, ' and ')} agree{'s' * (len(right) == 1)} to {max(right.values()):.1e}"
-    drifts = [getattr(x, f"{name}_drift", None) for name in wrong]
-    rate = f", by {drifts[0]:.3g} rad per unit of time" if len(wrong) == 1 and drifts[0] else ""
-    verb = "drifts" if rate else ("is" if len(wrong) == 1 else "are") + " wrong"
-    yield f"{agree[0].upper()}{agree[1:]}; only {joined(wrong, ' and ')} {verb}{rate}."
+    most = max(known[key] for key in right)
+    agree = f"{joined([names[x] for x in right], ' and ')} agree{'s' * (len(right) == 1)}"
+    drift = getattr(x, f"{wrong[0]}_drift", None) if len(wrong) == 1 else None
+    verb = f"drifts, by {drift:.3g} rad per unit of time" if drift else "differs"
+    verb = verb if len(wrong) == 1 else "differ"
+    only = joined([names[x] for x in wrong], " and ")
+    yield f"{_capital(agree)} to {most:.1e}; only {only} {verb}."
 
 
 def _few_rows(x: Comparison, limit: float) -> str:
@@ -127,9 +127,7 @@ def _few_rows(x: Comparison, limit: float) -> str:
 
 def failure(x: Comparison) -> str:
     """Return the verdict on a trajectory with its errors, and what explains them."""
-    words = "most likely" if x.explained == "most likely" else "probable"
-    why = f"{words} cause: {x.cause}" if x.cause else x.numbers
-    return "; ".join(filter(None, (sentence(x), why)))
+    return "; ".join(filter(None, (sentence(x), _cause(x) if x.cause else x.numbers)))
 
 
 def sentence(x: Comparison) -> str:

@@ -55,6 +55,8 @@ def _of_clock(recording: Recording) -> Iterator[Misreading]:
     if recording.reading.dt is None and (recording.t == np.rint(recording.t)).all():
         frames = {x: f"t counts frames, {x} per second" for x in _FRAME_RATES}
         factors |= {name: (1 / x, arg("fps", x)) for x, name in frames.items()}
+    step = "a step of the engine is {} as long as the times say".format
+    factors |= {step("twice"): (2.0, ""), step("half"): (0.5, "")}
     for name, (factor, remedy) in factors.items():
         yield Misreading(name, partial(Recording.timed, factor=factor), remedy, "clock")
     if even_times(recording.t) is not None:
