@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -34,10 +34,10 @@ class _Engine(ExactMotion):
         super().__init__(motion)
         self.weight, self.turn, top = weight, turn, motion.top
         self.torque = float(top.m) * float(top.g) * float(top.s)
-        self.moments = np.array([float(top.A), float(top.A), float(top.C)])
+        self.moments = float(top.A), float(top.C)
         tilt = np.asarray(float(top.inputs(radians=True)["theta0_rad"]))
         self.first = rotations.of_angles(tilt, 0 * tilt, 0 * tilt)
-        self.fixed = rotations.rotated(rotations.conjugate(self.first), _Z)
+        self.fixed = rotations.rotated(rotations.conjugate(self.first), _Z).tolist()
         rates = np.array([top.thetadot0, float(top.psidot0) * math.sin(tilt), top.r0], float)
         self.rates = rotations.rotated(self.first, rates) if weight == "space" else rates
 
@@ -46,18 +46,21 @@ class _Engine(ExactMotion):
         from scipy.integrate import solve_ivp  # start-up
 
         count = iter(range(_MOST_SLOPES))
+        A, C = self.moments
+        hand, side = (-1.0 if x == "space" else 1.0 for x in (self.weight, self.turn))
 
-        def slope(_: float, state: Array) -> Array:
+        def slope(_: float, state: Array) -> Sequence[float]:
             if next(count, None) is None:
-                return np.full_like(state, np.nan)  # ends the integration
-            q, w = state[:4], state[4:]
-            up, axis = rotations.rotated(rotations.conjugate(q), _Z), _Z
-            if self.weight == "space":
-                up, axis = _Z, rotations.axis_of(q)
-            push = self.torque * np.cross(self.fixed if self.weight == "fixed" else up, axis)
-            pair = (np.append(0.0, w), q) if self.turn == "space" else (q, np.append(0.0, w))
-            faster = (push - np.cross(w, self.moments * w)) / self.moments
-            return np.concatenate([rotations.product(*pair) / 2, faster])
+                return [math.nan] * len(state)  # ends the integration
+            w, x, y, z, p, q, r = state.tolist()
+            up_x, up_y = 2 * (x * z - hand * w * y), 2 * (y * z + hand * w * x)
+            if self.weight == "fixed":
+                up_x, up_y = self.fixed[:2]
+            push, twist = hand * self.torque, (C - A) * r
+            turn = [side * (y * r - z * q), side * (z * p - x * r), side * (x * q - y * p)]
+            turn = [w * p + turn[0], w * q + turn[1], w * r + turn[2]]
+            rates = [(push * up_y - twist * q) / A, (twist * p - push * up_x) / A, 0.0]
+            return [-(x * p + y * q + z * r) / 2, *(v / 2 for v in turn), *rates]
 
         state = np.concatenate([self.first, self.rates])
         flow = solve_ivp(slope, (0.0, t[-1]), state, "DOP853", t, rtol=1e-6, atol=1e-8)

@@ -272,12 +272,15 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
     def residual(at: float) -> float:
         return float(search.residuals([at])[0])
 
-    roots = set()
-    for i in np.flatnonzero((y[:-1] * y[1:] <= 0) | near[:-1] | near[1:]).tolist():
+    def sign(at: float) -> float:
+        return float(np.sign(residual(at)))
+
+    roots, signs = set(), np.sign(y)  # a product might underflow
+    for i in np.flatnonzero((signs[:-1] * signs[1:] <= 0) | near[:-1] | near[1:]).tolist():
         ends = x[i : i + 2].tolist()
-        if not residual(ends[0]) * residual(ends[1]) <= 0:
+        if not sign(ends[0]) * sign(ends[1]) <= 0:
             continue
-        found = _bisected(lambda at: np.sign(residual(at)), *ends)
+        found = _bisected(sign, *ends)
         root = min(found, key=lambda at: abs(residual(at)))
         most = np.fmax(*np.abs(y[i : i + 2]))
         if abs(residual(root)) <= _LEAP * most + 4 * np.spacing(abs(target)):

@@ -148,6 +148,11 @@ def test_words_and_bounds(condition: str, kept: list[int]) -> None:
     assert find(["T_nutation=0.45", condition], r0="10:60") == [both[i] for i in kept]
 
 
+def test_a_target_whose_square_underflows() -> None:
+    """Residuals of -1e-323 are no roots, however small their products are."""
+    assert find({"u1": 1e-323}, theta0_deg=90, psidot0=(-5, 5), scan=300) == []
+
+
 def test_a_tilt_may_be_in_radians() -> None:
     wanted = solve(Top(theta0_rad=0.5)).theta_max_deg
     (found,) = find({"theta_max": math.radians(wanted)}, theta0_rad=(0.1, 1), radians=True)
