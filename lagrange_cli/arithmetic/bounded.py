@@ -21,8 +21,8 @@ from .types import Array, Mask
 
 EPS = 2.0**-53 * (1 + 2.0**-20)
 """The relative error of a rounding to a double, and a millionth of it."""
-PAIR_EPS = 2.0**-100
-"""A few times that of an operation on pairs; of a sum, relative to the sizes of its terms."""
+PAIR_EPS = 2.0**-102
+"""Twice that of an operation on pairs; of a sum, relative to the sizes of its terms."""
 LOST = 2.0**-60
 """Relative error of a pair of doubles above which another form of it is tried."""
 Operand = Any

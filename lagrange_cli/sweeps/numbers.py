@@ -417,7 +417,14 @@ class ArrayNumbers(dict[str, Any]):
         if self.released:  # at u1 without precession
             south, north = mean_parts(gaps, self["k_prime"], gaps.rise, gaps.fall)
             return r0 + self["b"] * (south - north), self["b"] * (south + north)
-        south, north = mean_parts(gaps, self["k_prime"], *self["momenta"])
+        k_prime, b = self["k_prime"], self["b"]
+        south, north = mean_parts(gaps, k_prime, *self["momenta"])
+        if self.pairs:
+            past = gaps.far + self["a"] * self["below_u0"]  # a (u3 + 1)
+            ends = gaps.below_u1, gaps.below_u2
+            south = best(south, lambda: part_next_to(ends, k_prime, past, self["beta_plus_b"], -b))
+            ends, past = (gaps.above_u1, gaps.above_u2), gaps.a_above_u3
+            north = best(north, lambda: part_next_to(ends, k_prime, past, self["beta_minus_b"], b))
         spin, precession = r0 + south - north, south + north
         if not self.finer:
             return spin, precession
@@ -488,6 +495,28 @@ def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bou
             error[mixed] = _means(k, [d], *sizes)[0][0]
         found.append(Bounded(value, error, positive=positive) * 0.5)
     return found
+
+
+def part_next_to(
+    ends: tuple[Bounded, Bounded], k_prime: Bounded, past: Bounded, momentum: Bounded, b: Bounded
+) -> Bounded:
+    """Return a part of `mean_parts` as b/2 and the mean of c/(2 d), c = beta -+ b, next to a pole.
+
+    By f(+-1), |c| is the root of d1 d2 and `past`, the size of a (u3 -+ 1).  The mean of |c|/d then
+    is the root of `past` times a function of r = sqrt(d1/d2) and k', whose relative derivative by
+    the smaller one of r and 1/r is at most 1, and 1.9 r/k', as an integral over tan(x)/r shows.
+    """
+    d1, d2 = ends
+    c = sqrt(d1 * d2 * past).value
+    (value,), steps = _means(k_prime.value, [(d1.value, d2.value)], c, c)
+    ratio = d1.doubles / d2.doubles
+    weight = np.minimum(1.0, 2.0 * np.sqrt(np.minimum(ratio, 1 / ratio)) / k_prime.doubles)
+    of_ends = relative_errors(d1) + relative_errors(d2)
+    relative = 0.5 * (relative_errors(past) + weight * of_ends) + 2 * relative_errors(k_prime)
+    relative = relative + 10 * unit_of(value) * (steps + 1)
+    known = (of_ends < 0.01) & momentum.is_not_0()
+    size = Bounded(value, np.where(known, relative * size_of(value), np.inf))
+    return 0.5 * (size * np.sign(momentum.doubles) + b)
 
 
 def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any], Any]:

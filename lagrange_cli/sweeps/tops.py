@@ -85,7 +85,7 @@ class Angles(NamedTuple):
         else:
             near, far = np.sin(half.high), np.cos(half.high)
             near, far = near + half.low * far, far - half.low * near
-        unit = 8 * PAIR_EPS if pairs else 3 * EPS
+        unit = 4 * PAIR_EPS if pairs else 3 * EPS
         sine, cosine = (Bounded(x, None, unit, positive=True) for x in (near, far))
         if not self.in_degrees.all():  # pi - theta0
             error = unit * size_of(near) + np.where(down, 4 * PAIR_EPS, 0.0)
