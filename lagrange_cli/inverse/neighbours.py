@@ -38,12 +38,8 @@ _EDGE = 6
 """Rows at either end that show no step."""
 _EXPLAINS = 4.0
 """Fall of chi^2, as a factor, by a neighbour that explains a motion far from that of any top."""
-_LIKELIEST = 6
-"""Neighbours among which the name is chosen."""
-_STEPS = 2
-"""How often templates are computed again, along the motion that they change."""
-_SMALLEST = 1e-5
-"""Size below which digits of the data and of the motion count."""
+_LIKELIEST = 5
+"""Neighbours among which the name is chosen, and those that a line lists."""
 _LARGEST = 0.5
 """Size from which a change is not a small one, so that its template is wrong."""
 _POINTS = 96
@@ -218,10 +214,9 @@ class Finding:
     @property
     def is_possible(self) -> bool:
         """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
-        size, least, most = abs(self.size), _SMALLEST, _LARGEST
-        if self.one.is_square:
-            least, most = least**2, 1 / (2 * math.pi**2)  # beyond which no nutation is left
-        is_possible = least < size < most and (self.size > 0 or not self.one.is_positive)
+        most = 1 / (2 * math.pi**2) if self.one.is_square else _LARGEST  # no nutation is left
+        size = abs(self.size)
+        is_possible = size < most and (self.size > 0 or not self.one.is_positive)
         if self.one.name == LOST:
             is_possible = size > 0.5 and abs(size - round(size)) < max(3 * self.std, 0.1)
         is_far = any(x.is_large or x.outliers.any() for x in self.rests)
@@ -420,13 +415,12 @@ class Neighbours:
 
         If this explains less, as for a clock that changes rates by much, return what was found.
         """
-        begin, old, found = first.motion, first.one, first
-        for _ in range(_STEPS):
-            motion = begin.along(found.change * (old.row == 0), begin.ratio)
-            every = [*self._everywhere(motion), *self._from_row(motion), wander(motion)]
-            every += unround(motion, motion.angles[1]) if math.isfinite(motion.ratio) else []
-            one = next(x for x in every if x.name == old.name)
-            found = Finding(self, one._replace(row=old.row, tried=old.tried), motion)
+        begin, old = first.motion, first.one
+        motion = begin.along(first.change * (old.row == 0), begin.ratio)
+        every = [*self._everywhere(motion), *self._from_row(motion), wander(motion)]
+        every += unround(motion, motion.angles[1]) if math.isfinite(motion.ratio) else []
+        one = next(x for x in every if x.name == old.name)
+        found = Finding(self, one._replace(row=old.row, tried=old.tried), motion)
         return min(first, found, key=lambda x: x.chi2)
 
     @cached_property
@@ -465,7 +459,7 @@ class Neighbours:
     @property
     def line(self) -> str:
         """The neighbours that move the numbers most, if the recording does not test them."""
-        names = ", ".join(x.one.name for x in self.untested[:5])
+        names = ", ".join(x.one.name for x in self.untested[:_LIKELIEST])
         late = f", and maybe {self.late.text}" if self.late else ""
         return f"1 % each of {names}, which the recording cannot show{late}" if names else late[2:]
 
