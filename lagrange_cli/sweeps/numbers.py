@@ -1,48 +1,41 @@
 """The numbers of many motions: the formulas of `keys`, evaluated in bounded numbers.
 
 A formula may lose digits: then its bound is wide.  What is not a formula of the table is here: the
-functions that formulas use, the roots of the cubic (4,9), the mean rates, and the limits.  They
-avoid differences of nearly equal numbers, so that doubles are enough for most tops.  The same code
-in pairs of doubles computes the others.  Equation numbers are Chrapan's.
+functions that formulas use, and the limits.  They, `gaps` and `means` avoid differences of nearly
+equal numbers, so that doubles are enough for most tops.  The same code in pairs of doubles computes
+the others.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from copy import copy
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..arithmetic.bounded import (
     EPS,
-    LOST,
     Bounded,
     atan2,
     best,
     choose,
-    known,
     relative_errors,
-    root_of,
-    size_of,
     sqrt,
-    unit_of,
 )
 from ..arithmetic.formulas import evaluated
-from ..arithmetic.pairs import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import FAST, Regime
 from ..solver.keys import LINES, exists
+from .gaps import Gaps, gaps_of
+from .means import mean_parts, part_next_to
 from .tops import INPUTS, UNKNOWN, TopArrays, pi_of
 
 GOOD = 1e-13
 """Relative error up to which a number is trusted, of a cosine absolute."""
 _FINE = 0.9 * GOOD
 """Relative error up to which a mean rate is good enough for what is computed from it."""
-_RELEASED, _FROM_PAIRS = 64 * EPS, 8 * EPS
-"""Relative errors up to which the gaps of tops are good enough, released ones and others."""
-_NEWTON_STEPS, _STEPS_IN_PAIRS, _MEAN_STEPS, _AGM_STEPS = 100, 2, 11, 16
+_AGM_STEPS = 16
 
 
 def _by_relative_errors(value: Array, *parts: Bounded, least: float = 16.0) -> Bounded:
@@ -158,19 +151,6 @@ _FORMULAS = {
     "over": "swing - a*above_u0",
 }
 """Numbers that formulas of `keys` use."""
-
-
-class Gaps(NamedTuple):
-    """Distances between the roots u2 <= u1 <= 1 <= u3 of (4,9), the poles and the start u0."""
-
-    rise: Bounded  # u1 - u0
-    fall: Bounded  # u0 - u2
-    far: Bounded  # a (u3 - u0)
-    above_u1: Bounded  # 1 - u1
-    above_u2: Bounded
-    below_u1: Bounded  # 1 + u1
-    below_u2: Bounded
-    a_above_u3: Bounded  # a (u3 - 1)
 
 
 class ArrayNumbers(dict[str, Any]):
@@ -290,87 +270,9 @@ class ArrayNumbers(dict[str, Any]):
         """The rate of steady precession that a word names."""
         return choose(self.tops.steady == 1, *self["steady_rates"])
 
-    # the cubic a x^3 + c2 x^2 + c1 x + c0 = 0 (4,9) in x = u - u0
+    # the cubic (4,9)
 
-    @property
-    def gaps(self) -> Gaps:
-        """The gaps of motions that nutate, or keep their tilt.
-
-        The largest root X = a (u3 - u0) leaves a quadratic with a negative last coefficient, so
-        that its discriminant is a sum.  Its smaller root is a quotient.  Distances to a pole are
-        differences, or quotients by f(1) = -(beta - b)^2 and f(-1) = -(beta + b)^2.
-        """
-        if self.finer:
-            return Gaps(*(known(x.rounded(), _FROM_PAIRS) for x in self.finer["gaps"]))
-        a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
-        sine, zero = self["theta0"][0], Bounded(0.0, positive=True)
-        if self.steady:
-            around = self["psidot0"] * sine
-            far = self._root(around * around + self["square_of_steady"])
-            return Gaps(zero, zero, far, above, above, below, below, far - a * above)
-        if self.plane:
-            return self._gaps_of_pendulums()
-        if self.regime is None:
-            return self._gaps_of_any_start()
-        # u0 is a root: the others are those of X^2 - 2 half X - (a sin)^2 in X = a (u - u0)
-        half, a_sine, square = 0.5 * (b * b) - a * u0, a * sine, b * b
-        more = sqrt(half * half + a_sine * a_sine) + abs(half)
-        far = self._root(choose(half.doubles >= 0, more, a_sine * a_sine / more))
-        fall = a_sine * sine / far
-        above_u2, below_u2 = above + fall, square * below / (far + a * below)
-        a_above_u3 = square * above / above_u2
-        return Gaps(zero, fall, far, above, above_u2, below, below_u2, a_above_u3)
-
-    def _gaps_of_pendulums(self) -> Gaps:
-        """Return the gaps if b = beta = 0: two roots are -1 and 1, and `over` is a (u - 1) at the
-        third one, u."""
-        a, above, below, swing = (self[x] for x in ("a", "above_u0", "below_u0", "swing"))
-        zero, two = Bounded(0.0, positive=True), Bounded(2.0, positive=True)
-        turns, past = self.over_top, self._root(abs(self["over"]))
-        return Gaps(
-            rise=choose(turns, above, swing / a),
-            fall=below,
-            far=choose(turns, swing, a * above),
-            above_u1=choose(turns, zero, past / a),
-            above_u2=two,
-            below_u1=choose(turns, two, below + swing / a),
-            below_u2=zero,
-            a_above_u3=choose(turns, past, zero),
-        )
-
-    def _root(self, x: Bounded) -> Bounded:
-        return x if self.pairs else known(x, _RELEASED)
-
-    def _gaps_of_any_start(self) -> Gaps:
-        """Return the gaps from the cubic in u - u0 or, next to the separatrix, in 1 - u."""
-        a, b, u0, above, below = (self[x] for x in ("a", "b", "u0", "above_u0", "below_u0"))
-        sine, momentum = self["theta0"][0], self["momentum"]
-        north, south = self["beta_minus_b"], self["beta_plus_b"]
-        around, along = self["psidot0"] * sine, sine * self["thetadot0"]
-        energy, square = self["thetadot0"] * self["thetadot0"] + around * around, along * along
-        c1 = 2.0 * (b * momentum - u0 * energy) - a * (sine * sine)
-        far, rise, fall = roots_of_cubic(a, 2.0 * (a * u0) - energy - b * b, c1, square)
-        below_u1, above_u2 = below + rise, above + fall
-        a_above_u3 = far - a * above
-        above_u1 = best(above - rise, lambda: north * north / (above_u2 * a_above_u3))
-        a_above_u3 = best(a_above_u3, lambda: north * north / (above_u1 * above_u2))
-        below_u2 = best(below - fall, lambda: south * south / (below_u1 * (far + a * below)))
-        found = Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
-        lost = ~(relative_errors(above_u1) + relative_errors(a_above_u3) <= LOST)
-        if not lost.any():
-            return found
-        past = energy - a * above  # alpha - a
-        c1 = 2.0 * (b * north - past)
-        wide, above_u1, past_pole = roots_of_cubic(a, past + b * b - 2.0 * a, c1, north * north)
-        above_u2, a_above_u3 = wide / a, a * past_pole
-        far, rise, fall = a_above_u3 + a * above, above - above_u1, above_u2 - above
-        rise = best(rise, lambda: square / (far * fall))
-        fall = best(fall, lambda: square / (far * rise))
-        below_u1 = 2.0 - above_u1
-        below_u2 = best(2.0 - above_u2, lambda: south * south / (below_u1 * (far + a * below)))
-        other = Gaps(rise, fall, far, above_u1, above_u2, below_u1, below_u2, a_above_u3)
-        lost &= relative_errors(a_above_u3) <= relative_errors(found.a_above_u3)
-        return Gaps(*(choose(lost, y, x) for x, y in zip(found, other, strict=True)))
+    gaps = property(gaps_of)
 
     @property
     def roots(self) -> tuple[Bounded, Bounded]:
@@ -461,141 +363,3 @@ class ArrayNumbers(dict[str, Any]):
         apart = self["narrow"].surely(1) & self["height"].surely(1)
         signs = [self["beta_minus_b"], *(self["momenta"] if text == "path" else ())]
         return np.logical_and.reduce([apart, *(x.is_not_0() for x in signs)])
-
-
-def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bounded]:
-    """Return the means over a period of the partial fractions of psi' (4,7) at both poles,
-
-        south = (beta - b u)/(2 (1 + u)),    north = (beta - b u)/(2 (1 - u)),
-
-    from x and y, beta - b u at u1 and u2.  Then psi' = south + north, phi' = r0 + south - north.
-
-    If x and y have one sign, a relative error is at most that of x, y and d = 1 +- u, twice that of
-    k' (which changes the weight of each time), and ten roundings for each step, which only adds
-    numbers of one sign.  Otherwise it is relative to the mean of the sizes.
-    """
-    ends = [(gaps.below_u1, gaps.below_u2), (gaps.above_u1, gaps.above_u2)]
-    values, steps = _means(
-        k_prime.value, [(d1.value, d2.value) for d1, d2 in ends], x.value, y.value
-    )
-    unit, positive = unit_of(k_prime.value), x.positive and y.positive
-    of_momenta = np.maximum(relative_errors(x), relative_errors(y))
-    mixed = np.flatnonzero(x.doubles * y.doubles < 0)
-    found = []
-    for (d1, d2), value in zip(ends, values, strict=True):
-        rho = np.maximum(relative_errors(d1), relative_errors(d2)) + 2 * relative_errors(k_prime)
-        rho = rho + 10 * unit * ((_MEAN_STEPS if positive else steps) + 1)
-        if positive and not np.ndim(rho + of_momenta):
-            found.append(Bounded(value, None, rho + of_momenta, positive=True) * 0.5)
-            continue
-        error = (rho + of_momenta) * size_of(value)
-        if mixed.size:
-            k, *d = (v.doubles[mixed] for v in (k_prime, d1, d2))
-            sizes = (v.error[mixed] + rho[mixed] * v.size[mixed] for v in (x, y))
-            error[mixed] = _means(k, [d], *sizes)[0][0]
-        found.append(Bounded(value, error, positive=positive) * 0.5)
-    return found
-
-
-def part_next_to(
-    ends: tuple[Bounded, Bounded], k_prime: Bounded, past: Bounded, momentum: Bounded, b: Bounded
-) -> Bounded:
-    """Return a part of `mean_parts` as b/2 and the mean of c/(2 d), c = beta -+ b, next to a pole.
-
-    By f(+-1), |c| is the root of d1 d2 and `past`, the size of a (u3 -+ 1).  The mean of |c|/d then
-    is the root of `past` times a function of r = sqrt(d1/d2) and k', whose relative derivative by
-    the smaller one of r and 1/r is at most 1, and 1.9 r/k', as an integral over tan(x)/r shows.
-    """
-    d1, d2 = ends
-    c = sqrt(d1 * d2 * past).value
-    (value,), steps = _means(k_prime.value, [(d1.value, d2.value)], c, c)
-    ratio = d1.doubles / d2.doubles
-    weight = np.minimum(1.0, 2.0 * np.sqrt(np.minimum(ratio, 1 / ratio)) / k_prime.doubles)
-    of_ends = relative_errors(d1) + relative_errors(d2)
-    relative = 0.5 * (relative_errors(past) + weight * of_ends) + 2 * relative_errors(k_prime)
-    relative = relative + 10 * unit_of(value) * (steps + 1)
-    known = (of_ends < 0.01) & momentum.is_not_0()
-    size = Bounded(value, np.where(known, relative * size_of(value), np.inf))
-    return 0.5 * (size * np.sign(momentum.doubles) + b)
-
-
-def _means(k_prime: Any, ends: Sequence[Any], x: Any, y: Any) -> tuple[list[Any], Any]:
-    """Return the means over a period of (x cn^2 + y sn^2)/(d1 cn^2 + d2 sn^2) for each (d1, d2) of
-    `ends`, and the number of steps of each top, on which its neighbours have no influence.
-
-    It is Bulirsch's cel(k', p, x, y)/K (DLMF 19.2.11), p = k'^2 d2/d1, over d1.  Each step is
-    Bartky's transformation (Bulirsch 1969), which keeps it and squares the distance of m from g.
-    A mean that needs too many steps is NaN.
-    """
-    close_to = 2.0**-52 if isinstance(k_prime, DoubleDouble) else 2.0**-26
-    m, g, mc, states = 0.0 * k_prime + 1.0, k_prime, k_prime * k_prime, []
-    for d1, d2 in ends:
-        p = root_of(mc * d2 / d1)
-        states.append((x / d1, y * mc / d1 / p, p))
-    values, going = [v * np.nan for v, _, _ in states], np.ones(size_of(k_prime).shape, np.bool_)
-    steps = np.zeros(going.shape)
-    for _ in range(_MEAN_STEPS):
-        product = m * g
-        for i, (v, w, p) in enumerate(states):
-            q = product / p
-            states[i] = (v + w / p) * 0.5, (w + v * q) * 0.5, (p + q) * 0.5
-        still = going & (size_of(m - g) > close_to * size_of(m))
-        m, g = (m + g) * 0.5, root_of(product)
-        steps += going
-        if (done := going & ~still).any():
-            pick = DoubleDouble.choose if isinstance(m, DoubleDouble) else np.where
-            last = [(v * m + w) / (m + p) for v, w, p in states]
-            values = [pick(done, new, old) for new, old in zip(last, values, strict=True)]
-        going = still
-        if not going.any():
-            break
-    return values, steps
-
-
-def roots_of_cubic(
-    a: Bounded, c2: Bounded, c1: Bounded, c0: Bounded
-) -> tuple[Bounded, Bounded, Bounded]:
-    """Return a X, Y and Z from a x^3 + c2 x^2 + c1 x + c0 with c0 >= 0 and the roots X, Y and -Z,
-    where X is the largest, and Y and Z are not negative.
-
-    X leaves a quadratic with a negative last coefficient, so that its discriminant is a sum.
-    """
-    largest = largest_root(c2, a * c1, a * (a * c0))
-    total, product = (c1 + a * c0 / largest) / largest, c0 / largest
-    larger = (abs(total) + sqrt(total * total + 4.0 * product)) * 0.5
-    smaller = product / larger
-    upward = total.doubles >= 0
-    return largest, choose(upward, larger, smaller), choose(upward, smaller, larger)
-
-
-def largest_root(c2: Bounded, c1: Bounded, c0: Bounded) -> Bounded:
-    """Return the largest root of X^3 + c2 X^2 + c1 X + c0 with c0 >= 0, which has three real ones.
-
-    Newton's method descends to it from the larger root of X^2 + c2 X + c1, where the cubic is c0.
-    If f' changes by at most 1 % within 2 |f/f'|, the root is within 1.01 |f/f'|.
-    """
-    b2, b1, b0 = c2.doubles, c1.doubles, c0.doubles
-    x = 0.5 * (np.sqrt(np.maximum(b2 * b2 - 4 * b1, 0.0)) - b2)
-    x = np.where(b2 < 0, x, np.maximum(x, b1 / np.minimum(-b2 - x, -1e-300))) * (1 + 2.0**-24)
-    going = np.ones(x.shape, dtype=np.bool_)  # until the step of a top itself is small
-    for _ in range(_NEWTON_STEPS):
-        slope = (3 * x + 2 * b2) * x + b1
-        step = (((x + b2) * x + b1) * x + b0) / slope
-        x = np.where(going & (slope > 0), x - step, x)
-        going &= abs(step) > 1e-9 * x
-        if not going.any():
-            break
-    pairs = isinstance(c2.value, DoubleDouble)
-    root: Any = DoubleDouble(x) if pairs else x
-    for _ in range(_STEPS_IN_PAIRS if pairs else 1):
-        value = ((root + c2.value) * root + c1.value) * root + c0.value
-        root = root - value / ((3 * x + 2 * b2) * x + b1)
-        x = Bounded(root).doubles
-    exact = Bounded(root)
-    value = ((exact + c2) * exact + c1) * exact + c0
-    slope = (3 * x + 2 * b2) * x + b1
-    of_slope = ((3 * x + 2 * abs(b2)) * x + abs(b1)) * 2.0**-49 + 2 * c2.error * x + c1.error
-    error = (value.size + value.error) / slope
-    changes = 2 * error * (6 * x + 2 * abs(b2) + 12 * error) + of_slope
-    certain = (slope > 0) & (changes <= 0.01 * slope)
-    return Bounded(root, np.where(certain, 1.02 * error, np.inf), positive=True)
