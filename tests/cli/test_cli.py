@@ -139,18 +139,6 @@ def test_a_decimal_comma_changes_the_marks_only(line: str, lagtop: Lagtop) -> No
         assert other == marked
 
 
-def test_times_of_many_digits_are_printed_whole(lagtop: Lagtop) -> None:
-    """A time that is no decimal is rounded before the row is computed."""
-    t, third = "0.12345678901234567890123456789", "0.333333333333333"
-    assert (
-        lagtop("table", "--digits", 5, "--t-min", t, "--n", 1).stdout.split("\n")[1].split(",")[0]
-        == t
-    )
-    row = lagtop("table", "--digits", 9, "--t-max", 1, "--n", 4).stdout.splitlines()[2]
-    assert row == lagtop("table", "--digits", 9, "--t-min", third, "--n", 1).stdout.splitlines()[1]
-    assert row.startswith(f"{third},")
-
-
 @pytest.mark.parametrize(
     ("line", "times"),
     [

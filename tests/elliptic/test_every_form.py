@@ -149,16 +149,6 @@ def test_parameters_next_to_half_periods(k: str, place: str, lagtop: Lagtop) -> 
     assert check(cells, reference.third_kind(reference.number("0.3+0.2i"), v), (k, place)) == 12
 
 
-def test_omega_and_pi_at_sums(lagtop: Lagtop) -> None:
-    """At multiples of K and K' they are those at the same numbers."""
-    for k in ("0.8", "0.8i", "1.25"):
-        reference = Reference("k", k)
-        u, v = 3 * reference.K / 10, reference.K / 5 + 11j * reference.K_prime / 10
-        args = (f"--k={k}", "--u=0.3K", "--functions=omega,pi", "--param=0.2K+1.1iK'")
-        cells = cells_of(lagtop, *args)
-        assert check(cells, reference.third_kind(u, v), k) >= 6
-
-
 @pytest.mark.parametrize("u", ["1e25", "1e300"])
 def test_far_numbers(u: str, lagtop: Lagtop) -> None:
     """The precision grows with them; two that are too low could agree on a wrong number."""
@@ -172,14 +162,6 @@ def test_far_numbers(u: str, lagtop: Lagtop) -> None:
     of_pi = ("--k=0.5", "--u=1", "--functions=pi")
     one, other = (cells_of(lagtop, *of_pi, f"--param={v}") for v in (u, near))
     assert one == other
-
-
-@pytest.mark.parametrize(("k", "height"), [("0.8", 1.75075), ("0.8i", 1.5307), ("0", 5e5)])
-def test_am_ends_at_its_branch_points(k: str, height: float, lagtop: Lagtop) -> None:
-    """They are the poles of sn next to the real axis, at Im u = Re K'."""
-    for part, exists in ((0.999, True), (1.001, k == "0")):
-        cells = cells_of(lagtop, f"--k={k}", f"--u=7+{part * height}i", digits=None)
-        assert bool(cells["am_deg_re"][0]) is exists
 
 
 def test_omega_on_a_line_of_zeros(lagtop: Lagtop) -> None:

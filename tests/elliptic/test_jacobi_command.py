@@ -57,21 +57,6 @@ def test_poles_and_zeros_of_complex_numbers(digits: str, lagtop: Lagtop) -> None
     assert (found["sn_re"][0], found["pi01_im"][0], found["sn_re"][3]) == ("0.0", "0.0", "0.0")
 
 
-@pytest.mark.parametrize(
-    ("modulus", "u", "v", "zeros"),
-    [
-        ("--k 0.8", "0.3+0.7i", "0.3-0.7i", "omega01_im omega00_im"),
-        ("--k 0.8i", "0.25-0.5i", "0.25+0.5i", "omega01_im omega00_im"),
-        ("--k 0.8", "5.5+1i", "5.5-1i", "omega00_im"),
-        ("--k i", "1+i", "0.25-0.25i", "pi01_re pi11_re"),
-    ],
-)
-def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lagtop) -> None:
-    """Parts that are 0 by a symmetry are printed as 0, and nothing else is."""
-    found = cells(lagtop, f"{modulus} --u={u} --functions omega,pi --param={v} --digits 9")
-    assert {name for name, (text,) in found.items() if text == "0.0"} == set(zeros.split())
-
-
 @pytest.mark.parametrize("options", ["--k 0 --u 1e19i", "--k 1 --u 1e19+0.5i", "--k 1 --u 1e19"])
 def test_sizes_beyond_decimals_are_0_or_empty_cells(options: str, lagtop: Lagtop) -> None:
     assert lagtop("jacobi", *options.split()).exit_code == 0

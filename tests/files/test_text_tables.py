@@ -72,27 +72,6 @@ def test_every_reader_takes_the_same_tables(text: str, first: str, tmp_path: Pat
         assert reader(path, "") == TABLES[text]
 
 
-WRONG = [
-    *("FIRST;SECOND\n0,5;30\n1.5;40\n", "FIRST;SECOND\n1,234;30\n"),
-    *("FIRST\tSECOND\n1.234.567\t30\n", 'FIRST,SECOND\n0.5,"30\n', 'FIRST,"SECOND\n0.5,30\n'),
-    *("FIRST,SECOND\n0.5,30,1\n", "FIRST,SECOND\n0.5,30\nFIRST,SECOND,A,phi\n", "[" * 9000),
-    *('{"FIRST":0.5,"SECOND":1}\n{"FIRST":1.5,\n', '{"FIRST":0.5,"SECOND":1}\n[1]\n'),
-    *('{"FIRST":0.5,"SECOND":1,"FIRST":2}', "[1, 2]"),
-]
-
-
-@pytest.mark.parametrize("first", READERS)
-@pytest.mark.parametrize("text", WRONG)
-def test_every_reader_refuses_the_same_tables(text: str, first: str, tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    path.write_text(text.replace("FIRST", first).replace("SECOND", SECOND[first]))
-    for reader in READERS[first]:
-        with pytest.raises(DataError) as error:
-            reader(path, "")
-        assert "\n" not in str(error.value)
-        assert reader is of_tops or str(error.value).startswith(f"{path}, ")
-
-
 @pytest.mark.parametrize("first", READERS)
 def test_the_user_decides_about_commas(first: str, tmp_path: Path) -> None:
     path = tmp_path / "file"

@@ -103,21 +103,6 @@ def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
     assert lagtop("solve", path, "--psidot0", "0", "--theta0", "20", "--get", "m").exit_code == 0
 
 
-def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
-    keys = ["--keys", "m,r0,error"]
-    grid = lagtop("sweep", *WORDS[2:], "--m", "1,2 lb", "--r0", "log:60:6000:2 rpm", *keys)
-    assert grid.stdout.splitlines()[1:] == [
-        f"{m},{r0}," for m in (0.45359237, 0.90718474) for r0 in (2 * math.pi, 200 * math.pi)
-    ]
-    even = lagtop("sweep", "--r0", "60:180:3 rpm", "--keys", "r0").stdout.split()[1:]
-    assert even == [str(2 * turns * math.pi) for turns in (1, 2, 3)]
-    path = tmp_path / "tops.csv"
-    path.write_text("id,m [g],theta0 [mrad],r0 [rpm]\na,350,500,480\nb,5O,500,480\n")
-    rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_rad", "--rad")
-    assert rows.stdout.splitlines()[1] == "a,0.35,50.26548245743669,0.5,"
-    assert "line 3: m must be a finite decimal number, got '5O'" in rows.stdout
-
-
 def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, solved: Any) -> None:
     rest = ["--C", "4000g*cm^2", "--s", "3cm", "--g", "9.81m/s^2"]
     found = solved("--m", "350(2) g", "--A-cm", "5350 ± 1 % g*cm^2", *rest, "--theta0", "30(1)deg")
