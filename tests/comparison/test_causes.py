@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from engines import Array, Body, dop853, wxyz
+from engines import Array, Body, dop853, rk4_step, semi_implicit, wxyz
 from lagtop import Top, compare, solve
-from mistakes import SCENES, mistakes_of, rk4, semi_implicit, top_of
+from mistakes import SCENES, mistakes_of, top_of
 from mistakes import run as engine_run
 from scipy.spatial.transform import Rotation
 
@@ -338,7 +338,7 @@ def test_channels_are_judged_apart() -> None:
 
 
 def test_a_clock_of_coarse_steps_is_named_before_inputs() -> None:
-    t, rows = engine_run(mistakes_of(SCENES["general"])["right"][1], 0.33 / 40, 1, 1, rk4)
+    t, rows = engine_run(mistakes_of(SCENES["general"])["right"][1], 0.33 / 40, 1, 1, rk4_step)
     found = compare(TOP, 1.01 * t, quaternion=rows, max_error=1e-4)
     assert (found.cause, found.explained) == ("the clock is 1.0 % fast", "partly")
 
@@ -353,6 +353,6 @@ def test_a_coarse_step_is_not_blamed_on_the_inputs() -> None:
 def test_steps_of_an_engine_hide_no_rule_that_it_breaks(h: float) -> None:
     """Coarse steps move away from the equations soon."""
     engine = mistakes_of(SCENES["general"])["inertia"][1]
-    method = semi_implicit if h < 0.1 else rk4
+    method = semi_implicit if h < 0.1 else rk4_step
     t, rows = engine_run(engine, h / 40, 1, 1, method)
     assert compare(TOP, t, quaternion=rows).cause == "the inertia does not turn with the body"

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from engines import Array, Body, dop853, euler, rk4, wxyz
+from engines import Array, Body, dop853, euler_step, rk4, rk4_step, stepped, wxyz
 from lagtop import Comparison, Top, compare, solve
 from scipy.spatial.transform import Rotation
 
@@ -204,11 +204,11 @@ def with_steps(
 
 @pytest.mark.parametrize(
     ("method", "steps", "order"),
-    [(rk4, [8e-3, 4e-3, 2e-3], 4), (euler, [4e-3, 2e-3, 1e-3], 1)],
+    [(rk4_step, [8e-3, 4e-3, 2e-3], 4), (euler_step, [4e-3, 2e-3, 1e-3], 1)],
 )
 def test_order_of_convergence(method: Any, steps: list[float], order: int) -> None:
     """All errors of the first-order method end beyond 0.3 rad: its order shows before."""
-    rows, _ = with_steps([method(Body.of(TOP), h, 1) for h in steps], steps)
+    rows, _ = with_steps([stepped(Body.of(TOP), h, 1, method) for h in steps], steps)
     assert rows[0].order == pytest.approx(order, abs=0.5)
     assert {row.verdict for row in rows} <= {"fine", "drifts"}
     assert [(row.step, row.cause) for row in rows] == [(step, None) for step in steps]

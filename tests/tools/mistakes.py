@@ -13,9 +13,10 @@ import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
+from engines import Body, product, rk4_step, semi_implicit, stepped, unit
 from lagtop import Comparison, Top, compare
 
 Scene = dict[str, float]
@@ -39,70 +40,27 @@ def top_of(scene: Scene) -> Top:
     return Top(**{key: x for key, x in scene.items() if key != "end"})
 
 
-State = list[float]
+def ratios(engine: Body, right: Body) -> tuple[float, ...] | None:
+    """Return a, b and r0 over those of the right engine, None if an engine moves no top."""
+
+    def numbers(e: Body) -> tuple[float, ...]:
+        a, twist = 2 * e.half * abs(e.torque) / e.A, (e.C - e.A) / e.A
+        b = (twist + 2 * e.half) * e.rates[2]
+        return a * e.clock**2, b * e.clock, 2 * e.half * e.rates[2] * e.clock
+
+    if engine.rule or engine.damping > 0.1:
+        return None
+    return tuple(x / y for x, y in zip(numbers(engine), numbers(right), strict=True))
 
 
-class Engine(NamedTuple):
-    """An engine about the pivot: its numbers, and the rules that it breaks."""
-
-    A: float
-    twist: float
-    """C - A in the gyroscopic term."""
-    torque: float
-    tilt: float
-    rates: tuple[float, float, float]
-    damping: float = 0.0
-    clock: float = 1.0
-    half: float = 0.5
-    rule: str = ""
-
-    @property
-    def state(self) -> State:
-        """The attitude and the rates at the start."""
-        (p, q, r), cos, sin = self.rates, math.cos(self.tilt), math.sin(self.tilt)
-        rates = [p, cos * q - sin * r, sin * q + cos * r] if self.rule == "inertia" else [p, q, r]
-        return [math.cos(self.tilt / 2), math.sin(self.tilt / 2), 0.0, 0.0, *rates]
-
-    @property
-    def is_left(self) -> bool:
-        """Whether rates are multiplied on the left of the quaternion."""
-        return self.rule in {"side", "inertia"}
-
-    def slope(self, state: Any) -> State:
-        """Return the slope of a state."""
-        w, x, y, z, p, q, r = state
-        up_x, up_y = 2 * (x * z - w * y), 2 * (y * z + w * x)
-        if self.rule == "torque":  # that of the start, in the body
-            up_x, up_y = 0.0, math.sin(self.tilt)
-        if self.rule == "inertia":  # rates in space
-            up_x, up_y = -2 * (x * z + w * y), 2 * (w * x - y * z)
-        faster = [self.torque * up_y - self.twist * q * r, self.twist * p * r - self.torque * up_x]
-        pair = ((0, p, q, r), (w, x, y, z)) if self.is_left else ((w, x, y, z), (0, p, q, r))
-        turn = [self.half * v for v in _product(*pair)]
-        found = [*turn, faster[0] / self.A, faster[1] / self.A, 0.0]
-        found[4:] = [x - self.damping * y for x, y in zip(found[4:], (p, q, r), strict=True)]
-        return [self.clock * x for x in found]
-
-    def ratios(self, right: Engine) -> tuple[float, ...] | None:
-        """Return a, b and r0 over those of another engine, None if it moves no top."""
-
-        def numbers(e: Engine) -> tuple[float, ...]:
-            a, b = 2 * e.half * abs(e.torque) / e.A, (e.twist / e.A + 2 * e.half) * e.rates[2]
-            return a * e.clock**2, b * e.clock, 2 * e.half * e.rates[2] * e.clock
-
-        if self.rule or self.damping > 0.1:
-            return None
-        return tuple(x / y for x, y in zip(numbers(self), numbers(right), strict=True))
-
-
-def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
+def mistakes_of(scene: Scene) -> dict[str, tuple[str, Body]]:
     """Return engines with mistakes, and pairs of them, by a short name.
 
     Each comes with a part of the name that `compare` has for it, or "#" if it has none.
     """
     m, A, C, s, g, r0, degrees, thetadot0, psidot0, _ = scene.values()
     tilt, steiner, w = math.radians(degrees), m * s * s, m * g * s
-    no_com = {"twist": -steiner}
+    no_com = {"C": A - steiner}
 
     def start(
         angle: float = tilt, r: float = r0, slope: float = 1, turn: float = 1
@@ -113,9 +71,6 @@ def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
     lying = start(math.pi / 2 - tilt, slope=-1)
     around, upright = (psidot0 + r0) * math.sin(tilt), r0 * math.cos(tilt)
 
-    def moments(a: float = A, c: float = C) -> dict[str, Any]:
-        return {"A": a, "twist": c - a}
-
     found: dict[str, tuple[str, dict[str, Any]]] = {
         "right": ("#", {}),
         "gravity x 2": ("gravity acts twice", {"torque": 2 * w}),
@@ -125,16 +80,16 @@ def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
         "gravity up": ("g points upwards", {"torque": -w}),
         "g 10": ("g is 10 (or m or s is wrong by the same factor)", {"torque": w * 10 / 9.81}),
         "m + 7 %": ("m, g or s is 7.0 % larger than given", {"torque": 1.07 * w}),
-        "C = A": ("the gyroscopic term is left out of Euler's equations", moments(c=A)),
-        "gyro / 2": ("halved", moments(c=(A + C) / 2)),
-        "gyro reversed": ("the gyroscopic term has the wrong sign", moments(c=2 * A - C)),
+        "C = A": ("the gyroscopic term is left out of Euler's equations", {"C": A}),
+        "gyro / 2": ("halved", {"C": (A + C) / 2}),
+        "gyro reversed": ("the gyroscopic term has the wrong sign", {"C": 2 * A - C}),
         "no gyro com": ("(as if C = A - m s^2)", no_com),
-        "A + 5 %": ("A is", moments(1.05 * A)),
-        "C - 5 %": ("C is 5.0 % smaller than given", moments(c=0.95 * C)),
-        "C + 20 %": ("C is 20.0 % larger than given", moments(c=1.2 * C)),
-        "A + ms2": ("(A + m s^2)", moments(A + steiner)),
-        "A - ms2": ("(A - m s^2)", moments(A - steiner)),
-        "A, C exchanged": ("A and C are exchanged", {"A": C, "twist": A - C}),
+        "A + 5 %": ("A is", {"A": 1.05 * A}),
+        "C - 5 %": ("C is 5.0 % smaller than given", {"C": 0.95 * C}),
+        "C + 20 %": ("C is 20.0 % larger than given", {"C": 1.2 * C}),
+        "A + ms2": ("(A + m s^2)", {"A": A + steiner}),
+        "A - ms2": ("(A - m s^2)", {"A": A - steiner}),
+        "A, C exchanged": ("A and C are exchanged", {"A": C, "C": A}),
         "vertical spin": (
             "the spin r0 is about the vertical",
             {"rates": (thetadot0, around, upright)},
@@ -156,15 +111,15 @@ def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
         "side": ("on the left", {"rule": "side"}),
         "torque": ("torque", {"rule": "torque"}),
         "gravity x 2 + r0 sign": ("twice; r0 has", {"torque": 2 * w} | start(r=-r0)),
-        "C = A + damping": ("#decay", moments(c=A) | {"damping": 0.05}),
-        "gyro / 2 + horizontal": ("#", moments(c=(A + C) / 2) | lying),
+        "C = A + damping": ("#decay", {"C": A} | {"damping": 0.05}),
+        "gyro / 2 + horizontal": ("#", {"C": (A + C) / 2} | lying),
         "no gyro com + moon": ("#", no_com | {"torque": MOON * w}),
-        "A + 5 % + r0 sign": ("#", start(r=-r0) | moments(1.05 * A)),
-        "C = A + gravity / 2": ("#", {"torque": w / 2} | moments(c=A)),
-        "C - 5 % + moon": ("#", {"torque": MOON * w} | moments(c=0.95 * C)),
+        "A + 5 % + r0 sign": ("#", start(r=-r0) | {"A": 1.05 * A}),
+        "C = A + gravity / 2": ("#", {"torque": w / 2} | {"C": A}),
+        "C - 5 % + moon": ("#", {"torque": MOON * w} | {"C": 0.95 * C}),
         "r0 - 10 % + g 10": ("#", {"torque": w * 10 / 9.81} | start(r=0.9 * r0)),
-        "A - ms2 + r0 sign": ("s^2); r0", start(r=-r0) | moments(A - steiner)),
-        "C + 20 % + damping": ("#decay", moments(c=1.2 * C) | {"damping": 0.05}),
+        "A - ms2 + r0 sign": ("s^2); r0", start(r=-r0) | {"A": A - steiner}),
+        "C + 20 % + damping": ("#decay", {"C": 1.2 * C} | {"damping": 0.05}),
     }
     if thetadot0 and psidot0:
         for name, x in {
@@ -177,50 +132,14 @@ def mistakes_of(scene: Scene) -> dict[str, tuple[str, Engine]]:
             "r0 was taken as the gimbal's rate phi'": start(r=r0 + psidot0 * math.cos(tilt)),
         }.items():
             found[name] = name, x
-    right = Engine(A, C - A, w, **start())
+    right = Body.of(top_of(scene))
     return {short: (name, right._replace(**x)) for short, (name, x) in found.items()}
 
 
-def _product(a: Any, b: Any) -> tuple[float, float, float, float]:
-    (w, x, y, z), (W, X, Y, Z) = a, b
-    return (
-        w * W - x * X - y * Y - z * Z,
-        w * X + x * W + y * Z - z * Y,
-        w * Y - x * Z + y * W + z * X,
-        w * Z + x * Y - y * X + z * W,
-    )
-
-
-def rk4(e: Engine, y: State, h: float) -> State:
-    def moved(by: float, slope: State) -> State:
-        return [u + by * v for u, v in zip(y, slope, strict=True)]
-
-    a = e.slope(y)
-    b = e.slope(moved(h / 2, a))
-    c = e.slope(moved(h / 2, b))
-    d = e.slope(moved(h, c))
-    return moved(h / 6, [i + 2 * j + 2 * k + n for i, j, k, n in zip(a, b, c, d, strict=True)])
-
-
-def semi_implicit(e: Engine, y: State, h: float) -> State:
-    rates = [u + h * v for u, v in zip(y[4:], e.slope(y)[4:], strict=True)]
-    size = math.hypot(*rates) or 1e-300
-    half = e.half * e.clock * h * size
-    turn = math.cos(half), *(math.sin(half) / size * x for x in rates)
-    return [*(_product(turn, y[:4]) if e.is_left else _product(y[:4], turn)), *rates]
-
-
-def run(e: Engine, h: float, end: float, every: int, method: Any) -> Any:
-    """Return the times and quaternions of every so many steps."""
-    y = e.state
-    rows = [y[:4]]
-    for i in range(1, round(end / h) + 1):
-        y = method(e, y, h)
-        size = math.hypot(*y[:4])
-        y[:4] = [x / size for x in y[:4]]
-        if i % every == 0:
-            rows.append(y[:4])
-    return np.arange(len(rows)) * h * every, np.array(rows)
+def run(e: Body, h: float, end: float, every: int, method: Any) -> Any:
+    """Return the times and quaternions of every so many steps, with quaternions of norm 1."""
+    t, states = stepped(e, h, end, lambda *x: unit(method(*x)), every)
+    return t, states[:, :4]
 
 
 def constrained(
@@ -237,7 +156,7 @@ def constrained(
 
     def matrix(q: Any) -> Any:
         return np.array(
-            [_product(_product(q, (0, *x)), q * [1, -1, -1, -1])[1:] for x in np.eye(3)]
+            [product(product(q, (0, *x)), q * [1, -1, -1, -1])[1:] for x in np.eye(3)]
         ).T
 
     def crossing(v: Any) -> Any:
@@ -259,7 +178,7 @@ def constrained(
         v, omega = v + push / m, omega + inverse @ (K @ push)
         x, size = x + h * v, float(np.linalg.norm(omega))
         k = math.sin(size * h / 2) / size
-        q = np.array(_product((math.cos(size * h / 2), *(k * omega)), q))
+        q = np.array(product((math.cos(size * h / 2), *(k * omega)), q))
         q = q / np.linalg.norm(q)
         turn = matrix(q)
         if i % every == 0:
@@ -272,9 +191,9 @@ def runs(scene: Scene) -> Iterator[tuple[str, str, Any]]:
     found, r0, end = mistakes_of(scene), scene["r0"], scene["end"]
     for kind, h in (("fine", FINE / r0), ("coarse", COARSE / r0)):
         every = max(1, round(end / h / 400)) if kind == "fine" else 1
-        for method in (rk4, semi_implicit):
+        for name, method in (("rk4", rk4_step), ("semi_implicit", semi_implicit)):
             for bug, (_, engine) in found.items():
-                yield f"{method.__name__} {kind}", bug, run(engine, h, end, every, method)
+                yield f"{name} {kind}", bug, run(engine, h, end, every, method)
         constraints: dict[str, dict[str, Any]] = {
             "right": {},
             "no gyro com": {"twist": False},
@@ -316,7 +235,7 @@ def main() -> None:
             before = time.process_time()
             found = compare(top, t, quaternion=np.round(q, 10))
             seconds.append(time.process_time() - before)
-            true = engine.ratios(mistakes["right"][1])
+            true = ratios(engine, mistakes["right"][1])
             got = outcome(found, name, true, 0.02 if "fine" in method else 0.12)
             tally[method][got] += 1
             if got not in {"name", "numbers"}:
