@@ -100,7 +100,7 @@ READINGS: dict[str, Callable[[Rotation, Array], Given]] = {
     "the clock is 1.0 % fast": lambda turn, _: attitude(turn, t=1.01 * T),
 }
 """What is given to `compare` with a mistake in it, by a part of the name of the mistake."""
-SLOW = {"r0 in degrees was taken as radians"}
+SLOW = {"r0 in degrees was taken as radians", "inertia", "side"}
 PLANTED = [name for name in (*planted(SCENES["general"]), *READINGS) if name != "right"]
 
 FORMS: dict[str, Callable[[Rotation, Array], Given]] = {
@@ -220,6 +220,7 @@ def test_mirrored_motions_have_three_names() -> None:
     assert (back.cause or "").startswith("time runs backwards")
 
 
+@pytest.mark.slow
 def test_no_part_is_explained_by_what_spoils_the_attitude() -> None:
     """Rates that are forty-five times too large are like those of a top with r0 in degrees."""
     _, states = dop853(Body.of(TOP), T / 1e5, 1e-10)
@@ -279,7 +280,9 @@ def test_two_causes_of_one_input_each_combine() -> None:
     assert found.cause == "gravity acts twice; r0 has the wrong sign"
 
 
-@pytest.mark.parametrize("reading", ["the quaternion is xyzw and was read", "conjugate"])
+@pytest.mark.parametrize(
+    "reading", ["the quaternion is xyzw and was read", slow("conjugate", True)]
+)
 def test_a_misread_attitude_hides_no_wrong_input(reading: str) -> None:
     """The axis that is seen moves like that of a third top."""
     found = compare(TOP, T, **READINGS[reading](*run("general", "r0 rpm")))
@@ -349,7 +352,7 @@ def test_a_coarse_step_is_not_blamed_on_the_inputs() -> None:
     assert (found.cause, "use smaller steps" in (found.numbers or "")) == (None, True)
 
 
-@pytest.mark.parametrize("h", [0.02, 0.33])
+@pytest.mark.parametrize("h", [pytest.param(0.02, marks=pytest.mark.slow), 0.33])
 def test_steps_of_an_engine_hide_no_rule_that_it_breaks(h: float) -> None:
     """Coarse steps move away from the equations soon."""
     engine = mistakes_of(SCENES["general"])["inertia"][1]

@@ -116,7 +116,7 @@ def test_quantities_that_agree_at_first_are_compared(lagtop: Lagtop, tmp_path: P
 
 
 def test_a_hint_names_the_options_of_the_command_line(lagtop: Lagtop, tmp_path: Path) -> None:
-    path, turn = tmp_path / "other.csv", np.linspace(0, 9, 60)
+    path, turn = tmp_path / "other.csv", np.array([0.0, 9.0])
     rows = np.stack([turn, np.cos(turn**2), np.sin(turn**2), 0 * turn, 0 * turn], axis=1)
     np.savetxt(path, rows, delimiter=",", header="t,qw,qx,qy,qz", comments="")
     assert "(--align, --quaternion-order)" in lagtop("compare", path).stdout.replace("\n", " ")

@@ -257,7 +257,7 @@ def test_a_step_that_loses_the_phase_at_once() -> None:
 @pytest.mark.parametrize(
     ("inputs", "end", "cause"),
     [
-        ({"A": 39032 * 1.03}, 1, ""),
+        pytest.param({"A": 39032 * 1.03}, 1, "", marks=pytest.mark.slow),
         pytest.param({"psidot0": -3}, 0.5, "psidot0 has the wrong sign", marks=pytest.mark.slow),
         ({"r0": -50}, 0.5, "r0 has the wrong sign"),
     ],

@@ -124,9 +124,9 @@ def test_borders_of_a_path(word: str) -> None:
 
 def test_a_leap_is_no_root() -> None:
     """The mean spin leaps by a turn per period where the axis starts to pass round a pole."""
-    found = find({"mean_spin_rate": 46}, psidot0=(-40, 40))
+    found = find({"mean_spin_rate": 46}, psidot0=(-40, 40), scan=400)
     assert [x.mean_spin_rate for x in found] == pytest.approx([46], rel=1e-13)
-    (behind,) = find({"mean_precession_rate": -11.5}, r0=(-60, 60), theta0_deg=120)
+    (behind,) = find({"mean_precession_rate": -11.5}, r0=(-60, 60), theta0_deg=120, scan=400)
     exact = reference_record(behind.top.as_dict())["mean_precession_rate"]
     assert float(exact) == pytest.approx(-11.5)
 
@@ -209,6 +209,7 @@ def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
 def test_a_double_root_of_two_unknowns_is_printed(lagtop: Lagtop) -> None:
     conditions = "mean_precession_rate=6.08576336536358", "T_nutation=0.2598223966598593"
     how = "--r0=10:120", "--psidot0=-6:6", "--theta0", "57.65125255876922", "--keys", "r0,psidot0"
+    how += "--scan", "20"
     result = lagtop("find", *how, *conditions)
     (r0, psidot0), *others = [map(float, x.split(",")) for x in result.stdout.splitlines()[1:]]
     assert (r0, psidot0) == pytest.approx((59.9463, 0), abs=1e-4)
