@@ -67,35 +67,24 @@ def assert_double(motion: Motion, key: str, text: str | None) -> None:
         assert value in near, (key, motion.top, text)
 
 
-def numbers_of(entry: dict[str, Any]) -> dict[str, str | None]:
-    """Return the numbers of a top by key."""
-    return {key: x for key, x in zip(KEYS, entry["numbers"], strict=True) if key}
-
-
 SHARES = [0, *(pytest.param(i, marks=pytest.mark.slow) for i in range(1, 4))]
 """A quick run compares every fourth top, and a slow run the others."""
 
 
 @pytest.mark.parametrize("share", SHARES)
 def test_records(share: int) -> None:
-    """Words, and numbers with 30 digits, are the same."""
+    """Words and numbers with 30 digits are the same, and doubles are next to them."""
     radian_keys = [key for key in FROZEN["radian_keys"] if key]
     for entry in FROZEN["records"][share::4]:
-        motion, expected = solve(top_of(entry["top"])), numbers_of(entry)
+        motion = solve(top_of(entry["top"]))
+        expected = {key: x for key, x in zip(KEYS, entry["numbers"], strict=True) if key}
         assert [motion.regime, motion.path] == entry["words"], entry["top"]
         assert motion.record(digits=30, keys=list(expected)) == expected, entry["top"]
         if "radians" in entry:
             found = motion.record(digits=30, radians=True, keys=radian_keys)
             known = zip(FROZEN["radian_keys"], entry["radians"], strict=True)
             assert found == {key: x for key, x in known if key}, entry["top"]
-
-
-@pytest.mark.parametrize("share", SHARES)
-def test_doubles(share: int) -> None:
-    """Each number of a motion is the nearest double to the number with 30 digits."""
-    for entry in FROZEN["records"][share::4]:
-        motion = solve(top_of(entry["top"]))
-        for key, text in numbers_of(entry).items():
+        for key, text in expected.items():
             assert_double(motion, key, text)
 
 
