@@ -224,7 +224,8 @@ def _at(search: Search, point: Sequence[float]) -> str:
 def _distances(search: Search, off: Array) -> tuple[Array, Array]:
     """Return the spread of each number in a scan, and the distances of tops in these spreads."""
     size = np.maximum(np.abs([*search.targets.values()]), 1e-300)
-    spread = np.ma.masked_invalid(off).std(axis=0).filled(0.0)
+    finite = (x[np.isfinite(x)] for x in off.T)
+    spread = np.array([x.std() if x.size else 0.0 for x in finite])
     scale = np.where(spread > _SWEPT * size, spread, size)
     return scale, np.nan_to_num(np.linalg.norm(off / scale, axis=1), nan=np.inf)
 
