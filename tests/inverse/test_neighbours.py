@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from lagtop import fit, solve
@@ -54,7 +56,8 @@ def alone(t: Array, angles: dict[str, Array]) -> Outcome:
 )
 def test_a_template_is_the_change_of_the_motion(words: str, size: str) -> None:
     """Of machines by an integrator; in one direction at least."""
-    ends = [seen(*ANGLES, rows=180, noise=0.0, **{size: x})[1] for x in (1e-4, -1e-4)]
+    sizes: list[dict[str, Any]] = [{size: 1e-4}, {size: -1e-4}]
+    ends = [seen(*ANGLES, rows=180, noise=0.0, **x)[1] for x in sizes]
     expected = np.stack([ends[0][x] - ends[1][x] for x in ANGLES]) / 2e-4
     motion = Variations(np.array([A, B, *START]), R0 / B, np.arange(180) / 60)
     (changes,) = [x.changes for x in machines(motion) if words in x.name]
@@ -88,10 +91,8 @@ def test_a_body_that_is_not_round_is_named_with_a_spin_that_is_not_seen() -> Non
 
 def test_a_jump_is_named() -> None:
     t, angles = seen(*ANGLES)
-    assert (
-        "a jump of psi by 5."
-        in fit(t, **(angles | {"psi": angles["psi"] + 0.1 * (t > 1.2)})).failure()
-    )
+    jumped: dict[str, Any] = angles | {"psi": angles["psi"] + 0.1 * (t > 1.2)}
+    assert "a jump of psi by 5." in fit(t, **jumped).failure()
 
 
 def test_an_honest_top_is_good_and_has_model_errors() -> None:
