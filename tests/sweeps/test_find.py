@@ -209,8 +209,7 @@ def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
 def test_a_double_root_of_two_unknowns_is_printed(lagtop: Lagtop) -> None:
     conditions = "mean_precession_rate=6.08576336536358", "T_nutation=0.2598223966598593"
     how = "--r0=10:120", "--psidot0=-6:6", "--theta0", "57.65125255876922", "--keys", "r0,psidot0"
-    how += "--scan", "20"
-    result = lagtop("find", *how, *conditions)
+    result = lagtop("find", *how, "--scan", "20", *conditions)
     (r0, psidot0), *others = [map(float, x.split(",")) for x in result.stdout.splitlines()[1:]]
     assert (r0, psidot0) == pytest.approx((59.9463, 0), abs=1e-4)
     assert not others
