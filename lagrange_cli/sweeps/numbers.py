@@ -8,7 +8,6 @@ the others.  Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
-from copy import copy
 from operator import itemgetter
 from typing import Any
 
@@ -33,8 +32,6 @@ from .tops import INPUTS, UNKNOWN, TopArrays, pi_of
 
 GOOD = 1e-13
 """Relative error up to which a number is trusted, of a cosine absolute."""
-_FINE = 0.9 * GOOD
-"""Relative error up to which a mean rate is good enough for what is computed from it."""
 _AGM_STEPS = 16
 
 
@@ -196,18 +193,6 @@ class ArrayNumbers(dict[str, Any]):
         self[name] = value
         return value
 
-    def some(self, rows: Any) -> ArrayNumbers:
-        """Return the numbers of some of the motions; those that are known are kept."""
-        found = copy(self)
-        found.tops, found._has = self.tops.part(rows), {}
-        for name, x in self.items():
-            if isinstance(x, Bounded):
-                found[name] = x[rows]
-            elif isinstance(x, tuple):
-                parts = (y[rows] for y in x)
-                found[name] = Gaps(*parts) if isinstance(x, Gaps) else tuple(parts)
-        return found
-
     def has(self, name: str) -> Any:
         """Return which motions have a number."""
         if name not in self._has:
@@ -304,10 +289,7 @@ class ArrayNumbers(dict[str, Any]):
 
     @property
     def means(self) -> tuple[Bounded, Bounded]:
-        """The mean rates of spin (6,3) and precession (7,3).
-
-        If the parts cancel, those of any start are computed again in pairs of doubles.
-        """
+        """The mean rates of spin (6,3) and precession (7,3)."""
         r0 = self["r0"]
         if self.steady:
             return r0 - self["psidot0"] * self["u0"] * (not self.vertical), self["psidot0"]
@@ -327,16 +309,7 @@ class ArrayNumbers(dict[str, Any]):
             south = best(south, lambda: part_next_to(ends, k_prime, past, self["beta_plus_b"], -b))
             ends, past = (gaps.above_u1, gaps.above_u2), gaps.a_above_u3
             north = best(north, lambda: part_next_to(ends, k_prime, past, self["beta_minus_b"], b))
-        spin, precession = r0 + south - north, south + north
-        if not self.finer:
-            return spin, precession
-        lost = ~((spin.error <= _FINE * spin.size) & (precession.error <= _FINE * precession.size))
-        if (rows := np.flatnonzero(lost)).size:
-            finer = self.finer.some(rows)["means"]
-            for x, exact in zip((spin, precession), finer, strict=True):
-                y = exact.rounded()
-                x.value[rows], x.error[rows] = y.value, y.error
-        return Bounded(spin.value, spin.error), Bounded(precession.value, precession.error)
+        return r0 + south - north, south + north
 
     @property
     def half(self) -> tuple[Bounded, Bounded]:

@@ -21,7 +21,6 @@ from lagrange_cli.solver.facts import Regime
 from lagrange_cli.solver.keys import INPUT_KEYS, NUMBERS, TEXT_KEYS
 from lagrange_cli.solver.record import remark_without_numbers
 from lagrange_cli.sweeps import records
-from lagrange_cli.sweeps.numbers import ArrayNumbers
 from lagrange_cli.sweeps.tops import top_arrays
 from lagrange_cli.top.units import bare_name
 
@@ -160,15 +159,6 @@ def test_tops_at_the_threshold_of_sleeping_go_one_by_one(body: tuple[float, ...]
     fixed = {"m": m, "A": A, "C": C, "s": s, "g": g, "theta0_deg": 10, "thetadot0": 0, "psidot0": 0}
     regimes = top_arrays(fixed | {"r0": r0}, r0.size).groups().values()
     assert np.any(list(regimes), axis=0).tolist() == [True, False, False, False, True, False]
-
-
-def test_the_size_of_a_mean_rate_is_that_of_its_value() -> None:
-    """By it a bound is judged: in doubles, this rate has lost all digits but one."""
-    scene = {"m": 13218175665654.275, "s": 2.8135392389055003, "g": 3.8649844424897146e-08}
-    scene |= {"A": 116053808155104.36, "C": 214894215985413.3, "r0": 5.048121267903476e-15}
-    scene |= {"theta0_deg": 43.30544887403846, "thetadot0": 0.0, "psidot0": 2619.853383698917}
-    rate = ArrayNumbers(top_arrays(scene, 1), None)["mean_spin_rate"]
-    assert rate.size == abs(rate.value)
 
 
 @pytest.mark.parametrize("start", ["next to the pole", "next to the separatrix", "over the pole"])
