@@ -99,7 +99,7 @@ def fit_command(
     failed = [x.failure() for x in found if x.failures()]
     with ExitStack() as stack:  # a file is replaced only if the report is written
         if scene_path and not failed and found[0].inputs is not None:
-            scene = found[0].scene(source, si=given.si)
+            scene = found[0].scene(source)
             stack.enter_context(opened(scene_path)).write(scene.encode())
         if plot:
             from ..plot.reports import draw_decay, draw_fit

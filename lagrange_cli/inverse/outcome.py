@@ -17,7 +17,7 @@ from ..errors import AbsentError, joined
 from ..names import ANGLES
 from ..output.notebook import HasRecord
 from ..recordings.doubts import pivot_of
-from ..top.inputs import all_replaced
+from ..top.inputs import DECLARED, all_replaced
 from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .known import Known
@@ -29,10 +29,6 @@ from .rows import repeated
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_UNITS = {
-    **{"m": "kg", "s": "m", "g": "m/s^2", "A": "kg*m^2", "C": "kg*m^2"},
-    **dict.fromkeys(("r0", "thetadot0", "psidot0"), "rad/s"),
-}
 _FILTERED = 1e-4
 """Least share of the nutation, lost to a filter, that a note reports."""
 _LENGTHS = 1.2
@@ -390,11 +386,11 @@ class Outcome(HasRecord):
         remarks = [*self.remarks, *self.failures(), *self.hints]
         return record | {"verdict": self.verdict, "remark": "; ".join(remarks) or None}
 
-    def scene(self, source: str, *, si: bool = False) -> str:
+    def scene(self, source: str) -> str:
         """Return a scene file of the motion, whose comments have the uncertainties.
 
-        If `si` is true, inputs have units.  Comments mark those that are not determined.  Raises
-        AbsentError for a steady precession.
+        In SI, inputs have units.  Comments mark those that are not determined.  Raises AbsentError
+        for a steady precession.
         """
         if self.inputs is None:
             raise AbsentError("no scene is written: a steady precession does not determine a top")
@@ -406,7 +402,9 @@ class Outcome(HasRecord):
             *(f"# correlation of {pair}: {r:.3f}" for pair, r in self.correlations.items()),
         ]
         for key, x in self.inputs.items():
-            text = f'{key} = "{x!r} {_UNITS[key]}"' if si and key in _UNITS else f"{key} = {x!r}"
+            text = f"{key} = {x!r}"
+            if self.units.si and key in DECLARED:  # theta0_deg and theta0_rad name their unit
+                text = f'{key} = "{x!r} {self.units.named(DECLARED[key].unit)}"'
             lines.append(text + "  # not determined by the recording" * (key in self.arbitrary))
         return "".join(f"{line}\n" for line in lines)
 
