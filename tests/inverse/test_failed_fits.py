@@ -30,19 +30,12 @@ from scipy.stats import chi2
 from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
 from lagrange_cli.inverse.known import known_inputs
-from lagrange_cli.inverse.rows import evenly_timed, release
+from lagrange_cli.inverse.measured import measured
+from lagrange_cli.inverse.rows import release
 from lagrange_cli.inverse.search import best_fit
+from lagrange_cli.recordings.recording import recording_of
 from lagrange_cli.top.given import gather
 from lagrange_cli.top.values import values_of
-
-
-@pytest.mark.slow
-def test_exchanged_spin_and_precession_are_noticed() -> None:
-    t, seen = recorded("theta", "phi", "psi", seed=24)
-    sigma = {"theta": DEGREE, "phi": 3 * DEGREE, "psi": 0.1 * DEGREE}  # by the names of the paper
-    outcome = fitted(t, seen | {"phi": seen["psi"], "psi": seen["phi"]}, sigma=sigma)
-    assert outcome.verdict == "failed"
-    assert "phi and psi are exchanged: here phi is the spin and psi the" in outcome.failure()
 
 
 @pytest.mark.slow
@@ -72,10 +65,9 @@ def test_an_outlier_is_named() -> None:
     t, seen = recorded("theta", "psi", seed=8)
     seen["psi"][30] += 20 * DEGREE
     failure = fitted(t, seen).failure()
-    ((off, at),) = re.findall(r"^psi is (.*) deg off at t = (.*), far more than else", failure)
+    (off,) = re.findall(r"^psi is (.*) deg off at t = .*, far more than else", failure)
     assert float(off) == pytest.approx(20, abs=1)
-    assert float(at) == pytest.approx(t[30], rel=1e-5)
-    assert failure.endswith(f"; leave out the rows at t = {at}")
+    assert failure.endswith(f"; leave out the rows at t = {t[30]:.6g}")
 
 
 def test_a_tilt_that_stays_at_a_pole_is_no_top() -> None:
@@ -130,19 +122,14 @@ def test_an_oscillation_is_no_noise_that_ends_where_it_does_not_correlate() -> N
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["angles", "quaternion"])
-def test_a_decay_within_each_window_is_named(kind: str) -> None:
-    rng, t = np.random.default_rng(12), np.linspace(0, 6, 1441)
+def test_a_decay_within_each_window_is_named() -> None:
+    rng, t = np.random.default_rng(12), np.linspace(0, 6, 721)
     seen = {x: y + rng.normal(scale=0.3 * DEGREE, size=t.size) for x, y in slowed(27, t).items()}
-    if kind == "quaternion":
-        turns = Rotation.from_euler("ZXZ", np.stack([seen[x] for x in ("psi", "theta", "phi")], 1))
-        seen = {kind: turns.as_quat(scalar_first=True)}
     failure = fitted(t, seen).failure()
     found = re.search(r"the spin decays: (r0|b) falls from (\d+).* to (\d+).*within each", failure)
     assert found, failure
-    first = TRUTH["r0"]
     shown = [int(x) for x in found.groups()[1:]]
-    assert shown == pytest.approx([first, first * math.exp(-6 / 27)], abs=2)
+    assert shown == pytest.approx([TRUTH["r0"], TRUTH["r0"] * math.exp(-6 / 27)], abs=2)
 
 
 def test_a_release_is_seen_beside_missing_cells() -> None:
@@ -178,58 +165,40 @@ def test_friction_fails_and_windows_give_the_decay() -> None:
     assert decay.quantity == "b"
 
 
-def _of_body(seen: Mapping[str, Array]) -> Array:
-    """Return quaternions in the order w, x, y, z."""
-    turns = Rotation.from_euler("ZXZ", np.stack([seen["psi"], seen["theta"], seen["phi"]], 1))
+def _of_body(seen: Mapping[str, Array], frame: Rotation | None = None) -> Array:
+    """Return quaternions in the order w, x, y, z, of a body and a space with other axes."""
+    turns = Rotation.from_euler("ZXZ", np.stack([seen[x] for x in ("psi", "theta", "phi")], 1))
+    turns = turns if frame is None else frame * turns * frame.inv()
     return np.asarray(turns.as_quat(scalar_first=True))
 
 
-def _of_engine(seen: Mapping[str, Array]) -> Array:
-    """Return quaternions with y as the figure axis, in a space whose y axis points up."""
-    turns = Rotation.from_euler("ZXZ", np.stack([seen["psi"], seen["theta"], seen["phi"]], 1))
-    frame = Rotation.from_matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])
-    return np.asarray((frame * turns * frame.inv()).as_quat(scalar_first=True))
+ENGINE = Rotation.from_matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])
+"""y is the figure axis, and up."""
 
 
 @pytest.mark.parametrize(
     ("make", "reason"),
     [
-        pytest.param(lambda rng, t: slowed(20, t), "not noise", marks=pytest.mark.slow),
+        (lambda x: {"axis": axis_of(x["theta"], x["psi"])[:, ::-1]}, "use align=up=x"),
         (
-            lambda rng, t: {x: rng.uniform(0.2, 3, t.size) for x in ("theta", "psi")},
-            "the tilt varies",
-        ),
-        (
-            lambda rng, t: {
-                "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, ::-1]
-            },
-            "use align=up=x",
-        ),
-        (
-            lambda rng, t: {
-                "axis": axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])[:, [1, 2, 0]]
-            },
-            "the y axis of the data points up: use align=up=y",
-        ),
-        pytest.param(
-            lambda rng, t: {"quaternion": _of_engine(slowed(1e9, t))},
-            "the y axis is the figure axis: use align=axis=y,up=y",
-            marks=pytest.mark.slow,
-        ),
-        (
-            lambda rng, t: {"quaternion": np.roll(_of_body(slowed(1e9, t)), -1, axis=1)},
+            lambda x: {"quaternion": np.roll(_of_body(x), -1, axis=1)},
             "the quaternion is xyzw and was read as wxyz: quaternion_order=xyzw",
         ),
         (
-            lambda rng, t: {"axis": -axis_of(*[slowed(1e9, t)[x] for x in ("theta", "psi")])},
+            lambda x: {"axis": -axis_of(x["theta"], x["psi"])},
             "or the marker is opposite to the centre of mass: use align=up=-z",
+        ),
+        pytest.param(
+            lambda x: {"quaternion": _of_body(x, ENGINE)},
+            "the y axis is the figure axis: use align=axis=y,up=y",
+            marks=pytest.mark.slow,
         ),
     ],
 )
-def test_recordings_of_no_top_fail(make: Any, reason: str) -> None:
-    rng, t = np.random.default_rng(12), np.linspace(0, 3, 150)
-    seen = {x: y + rng.normal(scale=0.003, size=y.shape) for x, y in make(rng, t).items()}
-    outcome = fitted(t, seen)
+def test_another_frame_is_named(make: Any, reason: str) -> None:
+    rng, t = np.random.default_rng(12), np.linspace(0, 1.5, 75)
+    seen = make(motion_of(TOP, t))
+    outcome = fitted(t, {x: y + rng.normal(scale=0.003, size=y.shape) for x, y in seen.items()})
     assert outcome.verdict == "failed"
     assert reason in outcome.record()["remark"]
 
@@ -239,7 +208,6 @@ def test_recordings_of_no_top_fail(make: Any, reason: str) -> None:
     [
         ({}, 1.25, 1, "; the nutation is aliased, with 1.25 rows per period: record more"),
         ({"psidot0": 1.1, "thetadot0": 1.7, "r0": 73}, 1.25, 1, "align=up=-z; or the nutation is"),
-        ({"psidot0": 1.1, "thetadot0": 1.7, "r0": 73}, 20, -1, "align=up=-z"),
     ],
 )
 def test_an_aliased_nutation_is_named_and_so_is_a_frame_that_looks_like_it(
@@ -251,7 +219,6 @@ def test_an_aliased_nutation_is_named_and_so_is_a_frame_that_looks_like_it(
     noise = np.random.default_rng(12).normal(scale=0.003, size=(64, 3))
     failure = fit(t, axis=way * axis_of(exact["theta"], exact["psi"]) + noise).failure()
     assert said in failure
-    assert ("aliased" in failure) == (rows < 2)
 
 
 def test_an_impossible_body_fails() -> None:
@@ -282,10 +249,11 @@ def test_sigma_is_tested_on_both_sides() -> None:
     again = fitted(t, seen, sigma=sigma)
     assert again.chi2_dof == pytest.approx(1, rel=1e-3)
     assert again.numbers["b"][:2] == pytest.approx(plain.numbers["b"][:2], rel=1e-3)
-    small, large = (fitted(t, seen, sigma=x * 0.3 * DEGREE) for x in (0.5, 2))
-    assert re.match("chi2/dof = .*: the rms of (theta|psi) is (1.9|2)", small.failures()[0])
-    assert large.verdict == "good"
-    assert "the noise is below sigma" in large.remarks[-1]
+    one = recording_of(t, dict(seen))
+    low, high = (best_fit(measured(one, x * DEGREE), {}) for x in (0.15, 0.6))
+    assert re.match("chi2/dof = .*: the rms of (theta|psi) is (1.9|2)", low.failures()[0])
+    assert high.verdict == "good"
+    assert "the noise is below sigma" in high.remarks[-1]
 
 
 def test_noise_hardly_ever_fails_a_test() -> None:
@@ -308,50 +276,28 @@ def test_noise_hardly_ever_fails_a_test() -> None:
     assert np.mean((sums < low) | (sums > high)) == pytest.approx(CHANCE, abs=1.2e-3)
 
 
-def test_a_filter_is_said_to_make_the_nutation_smaller() -> None:
-    t, seen = recorded("theta", "psi", rows=242, noise=0.5, seed=8)
-    smooth = {x: np.convolve(np.unwrap(y), np.ones(3) / 3, "valid") for x, y in seen.items()}
-    outcome = fitted(t[1:-1], smooth)
-    (note,) = [x for x in outcome.remarks if "if a filter smoothed the data, the nutation is" in x]
-    share = float(note.rpartition("nutation is ")[2].partition("%")[0]) / 100
-    step = 2 * math.pi * float(t[1]) / outcome.numbers["T_nutation"].value
-    assert share == pytest.approx(step**2 / 3, rel=0.5)
-
-
-@pytest.mark.parametrize("meaning", ["radians", "elevation"])
-def test_another_meaning_of_angles_is_named(meaning: str) -> None:
-    t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
-    if meaning == "radians":  # read as degrees, with precession that has grown
-        seen = {x: np.radians(y + 20 * (x == "psi")) for x, y in seen.items()}
-    else:
-        seen["theta"] = math.pi / 2 - seen["theta"]
-    assert meaning in fitted(t, seen).hints[-1]
+def test_angles_in_radians_are_named() -> None:
+    """They were read as degrees; the precession has grown."""
+    t, seen = recorded("theta", "psi", rows=80, noise=0.1, seed=8)
+    degrees = {x: np.radians(y + 20 * (x == "psi")) for x, y in seen.items()}
+    assert "radians" in fitted(t, degrees).hints[-1]
 
 
 def test_rounded_times_are_named() -> None:
-    t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
+    t, seen = recorded("theta", "psi", rows=80, noise=0.1, seed=8)
     outcome = fitted(np.floor(10 * t), seen)
-    assert outcome.hints == ["t has only 10 values in 120 rows: write it with more digits"]
+    assert outcome.hints == ["t has only 10 values in 80 rows: write it with more digits"]
     t, seen = recorded("theta", "psi", "phi", rows=120, noise=0.02, seed=8)
-    outcome = fitted(np.round(t, 2), seen)
-    (shown,) = re.findall("t is rounded: .* rows are (.*) apart", outcome.failure())
+    (shown,) = re.findall("rounded: .* rows are (.*) apart", fitted(np.round(t, 2), seen).failure())
     assert float(shown) == pytest.approx(t[1], rel=1e-3)
-    kept = np.delete(np.arange(120), [17, 60])
-    lost = recording_from(np.round(2 * t, 2)[kept], theta=seen["theta"][kept], psi=t[kept])
-    even = evenly_timed(lost)
-    assert even is not None
-    assert even.t == pytest.approx(2 * t[kept], abs=2e-3)
-    assert evenly_timed(recording_from(2 * t, theta=seen["theta"], psi=t)) is None
 
 
 def test_precession_in_a_column_of_the_spin_is_questioned() -> None:
-    t, seen = recorded("theta", "psi", rows=120, noise=0.1, seed=8)
+    t, seen = recorded("theta", "psi", rows=60, noise=0.1, seed=8)
     outcome = fit(t, theta=seen["theta"], phi=seen["psi"])
     question = "if phi were the precession: if it is, name its column psi"
     assert any(question in x for x in outcome.notes)
     released = Top(**LAB, A=4.45e-3, C=2.5e-3, r0=100, theta0_deg=50)
-    times, angles = recorded("theta", "psi", top=released, rows=120, noise=0.3, seed=8)
+    times, angles = recorded("theta", "psi", top=released, rows=60, noise=0.3, seed=8)
     hints = fit(times, theta=angles["theta"], phi=angles["psi"]).hints
     assert hints == ["phi may be the precession, as in most books: name its column psi"]
-    alone = fit(t, theta=seen["theta"], known={"psidot0": 0})
-    assert not any(question in x for x in alone.notes)

@@ -12,9 +12,11 @@ import recordings
 from conftest import Lagtop, assert_one_line
 from engines import Array
 from lagtop import read_scene
-from noisy_recordings import recorded
+from noisy_recordings import recorded, recording_from
 
 from lagrange_cli.inverse.checks import CHANCE, chi2_bounds
+from lagrange_cli.inverse.report import fit_report
+from lagrange_cli.inverse.search import best_fit
 
 
 @pytest.mark.parametrize(
@@ -127,7 +129,7 @@ def test_the_record_and_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
 
 
 def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:
-    path = written(tmp_path / "one.csv", recorded("theta", "psi", rows=150, seconds=3, seed=23))
+    path = written(tmp_path / "one.csv", recorded("theta", "psi", rows=75, seconds=1.5, seed=23))
     result = lagtop("fit", path, "--window", 3, "--plot", tmp_path / "decay.svg")
     assert result.exit_code == 0, result.stderr
     assert result.stdout.splitlines()[-1].startswith("b does not decay: its relative rate is")
@@ -138,5 +140,16 @@ def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:
     assert "failed" in {x["verdict"] for x in windows}
     bound = chi2_bounds(windows[0]["dof"], CHANCE / 3)[1]
     assert windows[0]["chi2_dof_high"] == pytest.approx(bound)
-    unwritten = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
-    assert (unwritten.exit_code, (tmp_path / "no.toml").exists()) == (1, False)
+
+
+def test_a_failed_fit_writes_no_scene_and_marks_what_is_not_determined(
+    lagtop: Lagtop, tmp_path: Path
+) -> None:
+    path = written(tmp_path / "one.csv", recorded("theta", "psi", seed=23))
+    result = lagtop("fit", path, "--sigma", 0.1, "-o", tmp_path / "no.toml")
+    assert (result.exit_code, (tmp_path / "no.toml").exists()) == (1, False)
+    t, seen = recorded("theta", "phi", rows=40, noise=0.5, seed=1)
+    outcome = best_fit(recording_from(t, **seen), {})
+    assert outcome.is_open  # another top explains it as well
+    rows = fit_report([outcome], "data", "").rows
+    assert all(x.meaning.startswith("not determined: ") for x in rows)

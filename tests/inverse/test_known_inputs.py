@@ -17,14 +17,7 @@ from noisy_recordings import LAB, TRUTH, assert_true, fitted, recorded
     [
         (LAB | {"C": 2.5e-3, "A": 4.45e-3}, {"r0": 52.36, "b": TRUTH["b"]}),
         ({"r0": 52.36, "C": 2.5e-3, "g": 9.81}, {"A": 4.45e-3, "m*s": 0.04}),
-        *(
-            pytest.param(known, truth, marks=pytest.mark.slow)
-            for known, truth in (
-                (LAB | {"C": 2.5e-3}, {"r0": 52.36, "A": 4.45e-3}),
-                (LAB | {"C": "0.0025(1)", "r0": "52.4(9)"}, {"A": 4.45e-3, "b": TRUTH["b"]}),
-                (LAB | {"r0": 52.36}, {"C": 2.5e-3, "A": 4.45e-3}),
-            )
-        ),
+        (LAB | {"C": "0.0025(1)", "r0": "52.4(9)"}, {"A": 4.45e-3, "b": TRUTH["b"]}),
         ({"A": 4.45e-3, "C": 2.5e-3, "r0": 52.36}, {"a": TRUTH["a"], "m*g*s": 0.3924}),
         (LAB | {"A_cm": 4.45e-3 - 0.5 * 0.08**2}, {"b": TRUTH["b"], "C*r0": 2.5e-3 * 52.36}),
         (LAB | {"theta0_deg": 75, "psidot0": 0}, {"A": 4.45e-3, "b": TRUTH["b"]}),
@@ -40,22 +33,15 @@ def test_known_inputs_determine_others(known: dict[str, float], truth: dict[str,
     assert (product in outcome.notes) == ("C*r0" in outcome.numbers)
 
 
-@pytest.mark.parametrize(
-    ("known", "truth"),
-    [
-        (LAB | {"C": 2.5e-3, "phidot0": 40}, {"A": 4.45e-3, "psidot0": 6}),
-        ({"g": 9.81, "C": 2.5e-3, "phidot0": "40"}, {"A": 4.45e-3, "m*s": 0.04}),
-    ],
-)
-def test_a_known_rate_of_spin_is_no_total_spin(known: Any, truth: dict[str, float]) -> None:
+def test_a_known_rate_of_spin_is_no_total_spin() -> None:
     """r0 = phidot0 + psidot0 cos(theta0), and a scene has the motion whatever is not known."""
     top = Top(**LAB, A=4.45e-3, C=2.5e-3, phidot0=40, psidot0=6, theta0_deg=75)
     t, seen = recorded("theta", "psi", "phi", top=top, seed=8)
     nothing: dict[str, Any] = {}
-    for some in (known, nothing):
-        outcome = fitted(t, seen, known=some)
-        spin = {"r0": float(top.r0)} if outcome.numbers.keys() & {"r0"} else {}
-        assert_true(outcome, (truth if some else {}) | spin | {"a": solve(top).a}, least=2)
+    for known in (LAB | {"C": 2.5e-3, "phidot0": 40}, nothing):
+        outcome = fitted(t, seen, known=known)
+        truth = {"A": 4.45e-3, "psidot0": 6, "r0": float(top.r0), "a": solve(top).a}
+        assert_true(outcome, truth)
         assert outcome.inputs is not None
         again, exact = solve(Top(**outcome.inputs)), solve(top)
         for key in ("a", "b", "T_nutation", "mean_precession_rate"):
@@ -83,14 +69,10 @@ def test_an_uncertain_input_widens_only_what_depends_on_it() -> None:
         assert unsure[key][:2] == pytest.approx(sure[key][:2], rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    "rough",
-    [{"C": "0.003(1)"}, {"m": "0.2(2)", "A": 4.44e-3}],
-)
-def test_a_rough_input_is_improved(rough: dict[str, Any]) -> None:
+def test_a_rough_input_is_improved() -> None:
     """The fit with it begins in phase with the recording, whatever b the rough value implies."""
     t, seen = recorded("theta", "psi", "phi", seed=9)
-    found = fitted(t, seen, known=LAB | rough)
+    found = fitted(t, seen, known=LAB | {"C": "0.003(1)"})
     assert_true(found, TRUTH)
     assert found.numbers["b"].std < 0.3
 
@@ -119,24 +101,13 @@ def test_a_prior_lies_between_a_known_input_and_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("c", "r0"),
-    [("0.00270(10)", "60(1)"), pytest.param("0.0026", "52.36", marks=pytest.mark.slow)],
-)
-def test_a_known_input_that_contradicts_the_recording_is_named(c: str, r0: str) -> None:
-    t, seen = recorded("theta", "psi", seed=8)
-    failure = fitted(t, seen, known=LAB | {"C": c, "r0": r0}).failure()
-    assert failure.startswith(f"known C = {c} contradicts the recording"), failure
-    assert failure.endswith("omit C, or check m, g, s, r0")
-
-
-@pytest.mark.parametrize(
     ("known", "cause"),
     [
+        ({"C": "0.00270(10)", "r0": "60(1)"}, "omit C, or check m, g, s, r0"),
         ({"A": 4.45e-3 - 0.5 * 0.08**2}, "it is about the centre of mass, so give A_cm instead"),
         ({"C": 2.5e-3, "r0": 500.0}, "about 9.55 times as large: check the units, or omit C"),
         ({"C": 2.5e-3, "r0": 52.36, "psidot0": 1.0}, "omit psidot0"),
         ({"theta0_deg": 0.0}, "omit theta0"),
-        ({"C": 2.5e-6, "r0": 52.36}, "about 1/1000 of it: check the units, or omit C"),
         ({"C": 2.5e-4, "r0": 52.36}, "about 1/10 of it: check the units, or omit C"),
     ],
 )
@@ -150,25 +121,19 @@ def test_a_contradiction_says_which_unit_or_moment_it_is(
 def test_no_faster_spin_meets_a_known_moment() -> None:
     """Frame numbers instead of seconds make the moments 17,000 times as large."""
     _, seen = recorded("theta", "phi", "psi", rows=120, noise=0.05, seed=8)
-    for c in (2.5e-3, "0.00250(5)"):
-        failure = fitted(np.arange(120.0), seen, known=LAB | {"C": c}).failure()
-        assert failure.startswith("known C = 0.0025")
-        assert failure.endswith("omit C, or check m, g, s, the unit of t")
+    failure = fitted(np.arange(120.0), seen, known=LAB | {"C": "0.00250(5)"}).failure()
+    assert failure.startswith("known C = 0.0025")
+    assert failure.endswith("omit C, or check m, g, s, the unit of t")
 
 
-@pytest.mark.parametrize(
-    ("known", "said"),
-    [({"C": 2.5e-3}, "from the horizontal"), ({"r0": 52.36, "C": 2.5e-3}, "from the horizontal")],
-)
-def test_known_inputs_that_are_right_do_not_hide_the_cause(
-    known: dict[str, float], said: str
-) -> None:
-    t, seen = recorded("theta", "phi", "psi", rows=120, noise=0.1, seed=8)
+def test_known_inputs_that_are_right_do_not_hide_the_cause() -> None:
+    t, seen = recorded("theta", "phi", "psi", rows=80, noise=0.1, seed=8)
     turned = seen | {"theta": math.pi / 2 - seen["theta"]}
-    assert said in fitted(t, turned, known=LAB | known).failure()
+    known = LAB | {"r0": 52.36, "C": 2.5e-3}
+    assert "from the horizontal" in fitted(t, turned, known=known).failure()
 
 
-@pytest.mark.parametrize("known", [{"r0": 600}, {"C": 1.7458e-3}, {"r0": 600, "C": 1.7458e-3}])
+@pytest.mark.parametrize("known", [{"r0": 600}, {"C": 1.7458e-3}])
 def test_a_known_input_decides_the_direction_of_psi(known: dict[str, float]) -> None:
     """At 120 rows per second, written in microseconds; with psi reversed a slower spin fits."""
     top = recordings.TOP.replace(r0=600, theta0_deg=40, psidot0=1.5, thetadot0=4)
@@ -181,7 +146,7 @@ def test_a_known_input_decides_the_direction_of_psi(known: dict[str, float]) -> 
 
 
 def test_a_known_tilt_that_is_wrong_is_questioned() -> None:
-    t, seen = recorded("psi", rows=120, noise=0.05, seed=8)
+    t, seen = recorded("psi", rows=60, noise=0.05, seed=8)
     outcome = fitted(t, seen, known=LAB | {"theta0_deg": 20})
     assert outcome.hints[-1].endswith(": check theta0, columns, units and axes")
 
@@ -212,3 +177,11 @@ def test_a_wrong_body_is_named_and_no_machine(wrong: dict[str, float]) -> None:
     found, exact = solve(Top(**outcome.inputs)), solve(top)
     assert (found.a, found.b) == pytest.approx((exact.a, exact.b), rel=0.02)
     assert outcome.inputs["r0"] == pytest.approx(52, rel=0.01)
+
+
+def test_the_unit_of_a_known_spin_is_named() -> None:
+    """Also if a faster spin that looks alike in the rows is nearer."""
+    t, seen = recorded("theta", "phi", "psi", seed=4)
+    failure = fitted(t, seen, known={"r0": 52.36 * 30 / math.pi}).failure()
+    assert failure.startswith("known r0 = 500.001 contradicts the recording")
+    assert "9.55 times as large" in failure

@@ -25,7 +25,7 @@ KINDS_OF_GAPS = (
 EPS = 2.0**-52
 
 
-@pytest.mark.parametrize("theta0_deg", [0.0, 1e-6, 3.0, 55.0, 110.0, 176.0, 180.0])
+@pytest.mark.parametrize("theta0_deg", [0.0, 1e-6, 55.0, 176.0, 180.0])
 def test_motions_in_doubles_are_those_of_the_solver(theta0_deg: float) -> None:
     """Of bodies with C = A, whose r0 is b; also from the vertical, by the same convention."""
     body = {"m": 0.7, "A": 0.5, "C": 0.5, "s": 1.1, "g": 9.81, "theta0_deg": theta0_deg}
