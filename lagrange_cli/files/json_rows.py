@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from typing import Any
 
 import orjson
 
-from ..arithmetic.text import quoted, shortened
+from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
 from ..names import repeated
 
@@ -16,6 +17,7 @@ MOST_CELLS = 1 << 17
 """Most cells of a row: names and cells take more memory than the text of a file."""
 _MOST_DEPTH = 20
 """Most levels of JSON in a row; the rows themselves may be two levels down."""
+_MAYBE_TINY = re.compile(r"[eE]-\d{3}|\d{323}")
 
 
 def json_value(text: str, line: int | None = None) -> Any:
@@ -32,6 +34,8 @@ def json_value(text: str, line: int | None = None) -> Any:
         raise DataError(f"line {line + error.lineno - 1}: {wrong}") from None
     if text.count(":") != _keys_in(value):  # a key is named twice, or a text has a colon
         json.loads(text, object_pairs_hook=_once)
+    if _MAYBE_TINY.search(text):  # orjson rounds 1e-400 to 0
+        json.loads(text, parse_float=parse_number)
     return value
 
 
