@@ -28,6 +28,8 @@ CHANNELS = {
 }
 """Residuals by kind of recording: of the axis along the meridian and across it, of an attitude also
 about the axis."""
+ANGLE_OF = {"theta": "theta", "psi": "psi", "phi": "phi", "across": "psi", "along": "phi"}
+"""The angle that shows the noise of a channel."""
 LEAST_ROWS = 12
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""

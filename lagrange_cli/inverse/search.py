@@ -23,7 +23,7 @@ from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .conditions import Comparison, compare, ties_of
 from .known import START, Known, in_all_forms, scaled_known, time_power
-from .measured import LEAST_ROWS, Measured
+from .measured import ANGLE_OF, LEAST_ROWS, Measured
 from .minimum import MOST_ROWS, Minimum, converged, largest, minimum_at, slowest
 from .nutation import nutating_outcome
 from .outcome import Outcome
@@ -134,8 +134,7 @@ def _forms(
     if recording.kind == "angles" and "theta" in angles and passes_pole(signals["theta"]):
         if not recording.sigma and "psi" in angles:
             whole = replace(recording, kind="attitude" if "phi" in angles else "axis")
-            alias = {"across": "psi", "along": "phi"}
-            yield whole, {x: noise[alias.get(x, x)] for x in whole.channels}
+            yield whole, {x: noise[ANGLE_OF[x]] for x in whole.channels}
         is_seen = np.sin(angles["theta"]) > _NEAREST * noise["theta"][1]
         found = {x: y if x == "theta" else np.where(is_seen, y, np.nan) for x, y in angles.items()}
         if min(int(np.isfinite(y).sum()) for y in found.values()) >= LEAST_ROWS:

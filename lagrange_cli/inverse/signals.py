@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..arithmetic.types import Array
-from .measured import Measured, are_whole
+from .measured import ANGLE_OF, Measured, are_whole
 
 _MOST_ROWS, _STEP, _EXACT, _ROWS_PER_PERIOD = 700, 0.12, 1e-5, 2.2
 """Rows of the search for a frequency, its step and its precision over the inverse duration, and its
@@ -181,8 +181,7 @@ def noise_of(
     if "theta" in found:
         sine = np.sin(recording.angles["theta"])
         found["theta"] /= max(math.sqrt(float(np.nanmean(sine * sine))), 1e-3)
-    alias = {"across": "psi", "along": "phi"}
-    return {x: found.get(alias.get(x, x), 0.01) for x in recording.channels}
+    return {x: found.get(ANGLE_OF[x], 0.01) for x in recording.channels}
 
 
 def neighbour_noise(y: Array) -> float:

@@ -21,7 +21,7 @@ from ..top.units import bare_name
 from .checks import CHANCE, Noise, Residuals
 from .conditions import Vector, compare
 from .known import START, WEIGHT, Known, body_of
-from .measured import Measured
+from .measured import ANGLE_OF, Measured
 from .outcome import Number, Outcome
 from .problem import Ties
 from .reasons import Kind, Reason
@@ -137,10 +137,9 @@ def steady_outcome(
     The `noise` of the channels and all others are those of `Outcome`, `frequency` is that of a
     nutation to look for.
     """
-    alias = {"theta": "theta", "psi": "across", "phi": "along"}
-    sigma = recording.sigma
+    sigma = {ANGLE_OF[x]: y for x, y in recording.sigma.items()}
     means = {
-        x: _mean(y, x, recording, noise.get(x, Noise()).step, sigma.get(x) or sigma.get(alias[x]))
+        x: _mean(y, x, recording, noise.get(x, Noise()).step, sigma.get(x))
         for x, y in signals.items()
     }
     tilt = means.get("theta") or (_Mean(*known[TILT], 0.0) if TILT in known else None)
