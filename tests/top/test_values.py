@@ -111,8 +111,9 @@ def test_a_zero_is_0_whatever_its_exponent(tmp_path: Path, lagtop: Lagtop) -> No
         swept = lagtop("sweep", tmp_path / name, "--keys", "psidot0,error").stdout
         assert swept.split()[1] == "0.0,"
     assert lagtop("table", "--times", tmp_path / "t.csv").stdout.split()[1].startswith("0.0,")
-    (tmp_path / "a.ndjson").write_text('{"psidot0": 1e-400}\n')
-    assert_one_line(lagtop("sweep", tmp_path / "a.ndjson"), 65, "at least 5e-324 in magnitude, got")
+    (tiny := tmp_path / "a.ndjson").write_text('{"psidot0": 1e-400}\n')
+    said = f"{tiny}, line 1: must be 0 or at least 5e-324 in magnitude, got 1e-400"
+    assert_one_line(lagtop("sweep", tiny), 65, said)
     for words in (["table", "--t-max", "1", "--n"], ["solve", "--digits"]):
         assert_one_line(lagtop(*words, ZERO), 2, f"{words[-1]} must be in [1,")
 
