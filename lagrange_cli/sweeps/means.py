@@ -1,4 +1,4 @@
-"""Mean rates of many motions: the means over a period of the two parts of psi' (4,7).
+"""The mean rates of many motions, from the means over a period of two parts of psi' (4,7).
 
 Equation numbers are Chrapan's.
 """
@@ -10,11 +10,40 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.bounded import Bounded, relative_errors, root_of, size_of, sqrt, unit_of
+from ..arithmetic.bounded import (
+    Bounded,
+    best,
+    choose,
+    relative_errors,
+    root_of,
+    size_of,
+    sqrt,
+    unit_of,
+)
 from ..arithmetic.pairs import DoubleDouble
 from .gaps import Gaps
 
 _STEPS = 11
+
+
+def mean_rates(of: Any) -> tuple[Bounded, Bounded]:
+    """Return the mean rates of spin (6,3) and precession (7,3) from some `ArrayNumbers`."""
+    if of.steady:
+        return of["r0"] - of["psidot0"] * of["u0"] * (not of.vertical), of["psidot0"]
+    if of.plane:  # a half turn at each passage of a pole
+        half, turns = of["pi"] / of["T_nutation"], of.over_top
+        return choose(turns, Bounded(0.0), half), choose(turns, 2.0 * half, half)
+    r0, b, k_prime, gaps = (of[name] for name in ("r0", "b", "k_prime", "gaps"))
+    if of.regime is not None:  # released: at u1 without precession
+        south, north = mean_parts(gaps, k_prime, gaps.rise, gaps.fall)
+        return r0 + b * (south - north), b * (south + north)
+    south, north = mean_parts(gaps, k_prime, *of["momenta"])
+    if of.pairs:
+        ends, past = (gaps.below_u1, gaps.below_u2), gaps.far + of["a"] * of["below_u0"]
+        south = best(south, lambda: part_next_to(ends, k_prime, past, of["beta_plus_b"], -b))
+        ends, past = (gaps.above_u1, gaps.above_u2), gaps.a_above_u3
+        north = best(north, lambda: part_next_to(ends, k_prime, past, of["beta_minus_b"], b))
+    return r0 + south - north, south + north
 
 
 def mean_parts(gaps: Gaps, k_prime: Bounded, x: Bounded, y: Bounded) -> list[Bounded]:

@@ -17,7 +17,6 @@ from ..arithmetic.bounded import (
     EPS,
     Bounded,
     atan2,
-    best,
     choose,
     relative_errors,
     sqrt,
@@ -27,7 +26,7 @@ from ..arithmetic.types import Array, Mask
 from ..solver.facts import FAST, Regime
 from ..solver.keys import LINES, exists
 from .gaps import Gaps, gaps_of
-from .means import mean_parts, part_next_to
+from .means import mean_rates
 from .tops import INPUTS, UNKNOWN, TopArrays, pi_of
 
 GOOD = 1e-13
@@ -158,7 +157,7 @@ class ArrayNumbers(dict[str, Any]):
 
     A name is that of a line of `keys`, of an input, or of a property of this class.  Angles are in
     radians.  Facts are attributes with the names of `solver.facts`; some are masks.  No number is
-    certain if the axis of a top with initial rates passes over a pole.
+    certain if the axis passes over a pole, but for plane pendulums.
     """
 
     separatrix = False
@@ -290,29 +289,7 @@ class ArrayNumbers(dict[str, Any]):
         along, b = self["momentum"], self["b"]
         return along - b * self["rise"], along + b * self["fall"]
 
-    @property
-    def means(self) -> tuple[Bounded, Bounded]:
-        """The mean rates of spin (6,3) and precession (7,3)."""
-        r0 = self["r0"]
-        if self.steady:
-            return r0 - self["psidot0"] * self["u0"] * (not self.vertical), self["psidot0"]
-        if self.plane:  # a half turn at the bottom
-            half_turn = self["pi"] / self["T_nutation"]
-            over = self.over_top
-            return choose(over, Bounded(0.0), half_turn), choose(over, 2.0 * half_turn, half_turn)
-        gaps = self["gaps"]
-        if self.released:  # at u1 without precession
-            south, north = mean_parts(gaps, self["k_prime"], gaps.rise, gaps.fall)
-            return r0 + self["b"] * (south - north), self["b"] * (south + north)
-        k_prime, b = self["k_prime"], self["b"]
-        south, north = mean_parts(gaps, k_prime, *self["momenta"])
-        if self.pairs:
-            past = gaps.far + self["a"] * self["below_u0"]  # a (u3 + 1)
-            ends = gaps.below_u1, gaps.below_u2
-            south = best(south, lambda: part_next_to(ends, k_prime, past, self["beta_plus_b"], -b))
-            ends, past = (gaps.above_u1, gaps.above_u2), gaps.a_above_u3
-            north = best(north, lambda: part_next_to(ends, k_prime, past, self["beta_minus_b"], b))
-        return r0 + south - north, south + north
+    means = property(mean_rates)
 
     @property
     def half(self) -> tuple[Bounded, Bounded]:
