@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 import shlex
-from contextlib import chdir, suppress
+from contextlib import chdir
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -157,20 +157,36 @@ def matches(shown: str, found: str, blank: str) -> bool:
     return bool(re.fullmatch(blank.join(map(re.escape, shown.split("..."))), found))
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the files that the messages read."""
+    return filled(tmp_path_factory.mktemp("messages"))
+
+
+def filled(folder: Path) -> Path:
+    """Write the files into a folder, beside an empty one and a link to itself."""
+    (folder / "folder").mkdir()
+    (folder / "loop").symlink_to("loop")
+    for name, content in FILES.items():
+        (folder / name).write_bytes(content)
+    return folder
+
+
+def state_of(folder: Path) -> dict[Path, tuple[int, int]]:
+    """Return which files a folder holds, and when each was last written."""
+    found = ((x, x.lstat()) for x in folder.rglob("*"))
+    return {x: (of.st_ino, of.st_mtime_ns) for x, of in found}
+
+
 @pytest.mark.filterwarnings("ignore::lagrange_cli.MixedBodyWarning")
 @pytest.mark.parametrize(("line", "said"), MESSAGES)
-def test_a_message(line: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "folder").mkdir(exist_ok=True)
-    with suppress(FileExistsError):
-        (tmp_path / "loop").symlink_to("loop")
-    for name, content in FILES.items():
-        (tmp_path / name).write_bytes(content)
-    found = said_by(line)
+def test_a_message(line: str, said: str, folder: Path) -> None:
+    before = state_of(folder)
+    with chdir(folder):
+        found = said_by(line)
     assert found.isprintable()
     assert found == said or matches(said, found, ".*")
-    left = {x.name: x.read_bytes() for x in tmp_path.rglob("*") if x.is_file()}
-    assert left == FILES
+    assert state_of(folder) == before
 
 
 @pytest.mark.parametrize(("line", "shown"), NUMBERS)
@@ -186,12 +202,14 @@ def test_numbers(line: str, shown: str) -> None:
 def rewrite() -> None:
     """Put the messages that are no longer as shown into the file."""
     text = WORDING
-    with TemporaryDirectory() as folder, chdir(folder):
+    with TemporaryDirectory() as place:
+        folder = filled(Path(place))
         for line, said in MESSAGES:
             try:
-                test_a_message(line, said, Path(folder), pytest.MonkeyPatch())
+                test_a_message(line, said, folder)
             except AssertionError:
-                text = text.replace(f"{line}\n{said}\n", f"{line}\n{said_by(line)}\n", 1)
+                with chdir(folder):
+                    text = text.replace(f"{line}\n{said}\n", f"{line}\n{said_by(line)}\n", 1)
     (PAGES / "wording.txt").write_text(text, encoding="utf-8")
 
 
