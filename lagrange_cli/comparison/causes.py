@@ -83,32 +83,35 @@ class _Search:
         """Return the greatest error if a cause is corrected."""
         return float(self.errors(cause, most).max())
 
-    def agrees(self, cause: Cause) -> bool:
+    def agrees(self, cause: Cause, *, is_whole: bool = True) -> bool:
         """Return whether the axis of a cause's top moves like the one that is seen.
 
         It is another axis that is seen if the attitude was misread, or an engine moves no top.
+        Only the whole cause may have a nutation that the rows do not show.
         """
         if not self.seen or cause.kinds & {"attitude", "engine"}:
             return True
         clock = float(np.ptp(self.few(cause, _SOME).t) / (np.ptp(self.run.t) or 1.0))
-        return self.seen.is_near((cause.exact or self.given).motion.top, clock)
+        top = (cause.exact or self.given).motion.top
+        return self.seen.is_near(top, clock, hidden=is_whole)
 
     def best(self, causes: Iterable[Cause], limit: float) -> list[Cause]:
         """Return the simplest cause that leaves about as little as the best, and its rivals.
 
         A cause that leaves more than the limit of a trajectory has more rivals.
         """
-        enough = min(_EXPLAINS * self.before.max(), limit)
-        found = [x for y in filter(self.agrees, causes) for x in self.fitting(y, enough)]
+        enough, is_whole = min(_EXPLAINS * self.before.max(), limit), limit <= self.limit
+        agreed = (x for x in causes if self.agrees(x, is_whole=is_whole))
+        found = [x for y in agreed for x in self.fitting(y, enough)]
         found = [x._replace(error=self.error(x, _SOME)) for x in found if not self.spoils(x)]
-        rival = _AS_GOOD if limit <= self.limit else _COMPETES
+        rival = _AS_GOOD if is_whole else _COMPETES
         bound = max(rival * min((x.error for x in found), default=0.0), _ROUNDING)
         named: list[Cause] = []
         for x in found:
             if x.error <= min(bound, enough) and not any(y.name in x.name for y in named):
                 named.append(x)
         if len(named) > _NAMES:
-            named = named[:_NAMES] if limit <= self.limit else []
+            named = named[:_NAMES] if is_whole else []
         if named:  # the others leave about as little
             named[0] = named[0]._replace(error=self.error(named[0]))
         return named if named and named[0].error <= enough else []
@@ -138,7 +141,7 @@ class _Search:
         inputs = [*self.rates_of_clock(), *inputs]
         if self.before[0] > self.limit:  # not only the rates are wrong
             yield inputs, self.limit
-            yield from self.shifts()
+            yield self.shifts(), self.limit
             two = min(_EXPLAINS**2 * self.before.max(), self.limit)
             yield self.turned(), two
             reverse = other_tops(Top(**self.top.inputs() | {"r0": -self.top.r0}))
@@ -211,12 +214,12 @@ class _Search:
             name = f"the unit of t is {ratio:.4g} times that of the rates"
         return [of_clock(name, factor=ratio)]
 
-    def shifts(self) -> Iterator[tuple[list[Cause], float]]:
+    def shifts(self) -> Iterator[Cause]:
         """Yield shifts of the clock that explain most: within about a period, and any."""
         span, period = float(np.ptp(self.run.t)), self.given.motion.T_nutation or 0.0
         for reach in (max(period, 10 * span / self.run.t.size), span):
             shift = self.clock("shift", 0.0, _STEP / self.rate, reach)
-            yield [of_clock(f"the clock is shifted by {shift:.5g}", shift=shift)], self.limit
+            yield of_clock(f"the clock is shifted by {shift:.5g}", shift=shift)
 
     def clock(self, change: str, best: float, step: float, reach: float) -> float:
         """Return the change of the clock that explains most, at most `reach` from a first one."""

@@ -50,14 +50,16 @@ class Estimate(NamedTuple):
         """Whether the axis moves like that of a top."""
         return self.axis.residual <= TRUSTED
 
-    def is_near(self, top: Top, clock: float = 1.0, share: float = 0.02) -> bool:
-        """Return whether the axis of a top, with another clock, might move like this one.
+    def is_near(
+        self, top: Top, clock: float = 1.0, share: float = 0.02, hidden: bool = False
+    ) -> bool:
+        """Return whether the axis of a top, with another clock, moves like this one.
 
-        Rows do not show a nutation that is much faster than they are.
+        `hidden` is the answer for a nutation that is so fast that rows do not show it.
         """
         (a, b), axis = a_and_b(top), self.axis
         if abs(b * clock) * self.step > _HIDDEN:
-            return True
+            return hidden
         share += 3 * axis.residual
         off_a, off_b = abs(a * clock**2 - axis.a), abs(abs(b * clock) - abs(axis.b))
         is_near_a = off_a <= share * max(a * clock**2, axis.a) + axis.a_spread
