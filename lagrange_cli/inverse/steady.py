@@ -174,7 +174,7 @@ def steady_outcome(
         v, has = found.vector.motion(at), found.vector.body(at)
         keys = {"theta": "mean_tilt_rad", "psi": "mean_precession_rate", "phi": "mean_spin_rate"}
         numbers = {y: at[:, i] for i, (x, y) in enumerate(keys.items()) if x in means}
-        numbers |= {"r0": v["r0"]} if is_derived and not is_known else {}
+        numbers |= {"r0": v["r0"]} if is_derived else {}
         if factor:
             weight = 2 * math.prod(has[x] for x in "msg" if x in has)
             unknown = [x for x in "msg" if x not in has]
@@ -183,7 +183,7 @@ def steady_outcome(
             numbers["b/a"] = v["b"] / (weight / has["A"] if is_exact else v["a"])
             product = numbers["b/a"] * weight / (v["r0"] if is_sure else 1)
             numbers[f"C{over}" if is_sure else f"C*r0{over}"] = product
-        return {x: y for x, y in numbers.items() if x not in all_replaced(known)}
+        return {x: y for x, y in numbers.items() if x not in known}
 
     numbers = {
         key: Number(value, std, _MEANINGS.get(bare_name(key), "from the mean rates"), own)
