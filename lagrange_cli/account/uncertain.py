@@ -11,11 +11,11 @@ from ..arithmetic.text import NumberText, uncertain_text
 from ..errors import AbsentError, LagtopError
 from ..names import check_names
 from ..output.report import Field, Report, with_unit
-from ..solver.keys import NUMBERS, TEXT_KEYS, shown_keys
+from ..solver.keys import NUMBERS, TEXT_KEYS
 from ..solver.solve import Motion
 from ..top.given import Given
 from ..top.inputs import DECLARED
-from ..top.units import Units
+from ..top.units import Units, bare_name
 from .spread import Spread, Uncertainty
 
 NO_SPREAD = "motions one standard deviation away lack it, or it is beyond the range of doubles"
@@ -109,7 +109,7 @@ def budget(found: Given, motion: Motion, key: str, units: Units) -> tuple[Report
     if uncertainty is None or not math.isfinite(uncertainty.std):
         raise AbsentError(f"{key} has no uncertainty: {NO_SPREAD}")
     given = {x: float(found.inputs[x]) for x in found.stds}
-    shown, four_digits = _units(found, [key, *given]), "{:.4g}".format
+    shown, four_digits = _units([key, *given]) if units.si else {}, "{:.4g}".format
     fields = [
         Field("quantity", "quantity", lambda x: with_unit(x, shown.get(x)), is_text=True),
         Field("value", "value", lambda x: f"{x:.6g}"),
@@ -137,11 +137,8 @@ def budget(found: Given, motion: Motion, key: str, units: Units) -> tuple[Report
     return Report({"key": key}, fields, rows, [conclusion], shown), uncertainty.linear
 
 
-def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
-    """Return the units of inputs and of keys of the record, if inputs have units."""
-    if not found.si:
-        return {}
-    shown = {key: found.units(radians=False).named(x.unit) for key, x in DECLARED.items()}
-    for radians in (False, True):
-        shown |= {key: x.unit for key, x in shown_keys(found.units(radians=radians)).items()}
-    return {key: unit for key in keys if (unit := shown.get(key))}
+def _units(names: Iterable[str]) -> dict[str, str]:
+    """Return the SI units of inputs and of keys of the record."""
+    units = {bare_name(x): key.unit for x, key in (DECLARED | NUMBERS).items()}
+    named = {x: Units(x.endswith("_rad"), si=True).named(units[bare_name(x)]) for x in names}
+    return {x: unit for x, unit in named.items() if unit}
