@@ -113,12 +113,6 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
     assert "units" not in plain
 
 
-def test_a_sleeping_top_has_the_uncertainty_of_its_spin(lagtop: Lagtop) -> None:
-    by_spin = lagtop("table", "--theta0", 0, "--r0", "50(1)", "--t-max", 1, "--n", 2)
-    assert by_spin.stdout.endswith(",0.0,57.2958,0.0\n")
-    assert by_spin.stderr == ""
-
-
 def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "top.toml"
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')

@@ -56,8 +56,6 @@ def test_a_motion_draws_on_axes() -> None:
     axes = Figure().add_subplot()
     assert MOTION.plot("cubic", ax=axes) == [axes]
     assert axes.lines
-    with pytest.raises(LagtopError, match="did you mean 'sphere'"):
-        MOTION.plot("spheer")
 
 
 def test_names_of_a_motion_are_public_and_known() -> None:

@@ -13,7 +13,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import mpmath
 import numpy as np
 import pytest
 from conftest import ROOT, Lagtop
@@ -155,15 +154,6 @@ def test_a_further_form_is_one_row_and_one_field(tmp_path: Path) -> None:
         check=False,
     )
     assert "11 passed" in ran.stdout, ran.stdout
-
-
-def test_a_period_is_exact_to_the_digits(lagtop: Lagtop) -> None:
-    words = ["--digits", "900", "--get", "r0", "--psidot0", "0.3", "--theta0", "40"]
-    with mpmath.workdps(950):
-        cosine = mpmath.cos(40 * mpmath.pi / 180)
-        exact = 2 * mpmath.pi / mpmath.mpf("0.1256") + mpmath.mpf("0.3") * cosine
-        expected = mpmath.nstr(exact, 900)
-    assert lagtop("solve", "--spin-period", "0.1256", *words).stdout.strip() == expected
 
 
 def test_a_period_with_units_and_an_uncertainty(tmp_path: Path, lagtop: Lagtop) -> None:
