@@ -82,27 +82,31 @@ class _Precision:
 _lock = _Precision.lock
 
 
-def at_precision(digits: int, compute: Callable[[], T]) -> T:
+def at_precision(digits: int, compute: Callable[[], T], *, checked: bool = True) -> T:
     """Return `compute()`, evaluated with balls of `digits` digits.  Calls may be nested.
 
-    It is evaluated once more if another thread has changed the precision.
+    It is evaluated once more if another thread has changed the precision.  A part of a computation
+    with as many digits saves the time of this if it need not be `checked` by itself.
     """
+    bits = int(digits * BITS) + 2
     with _lock:
         outer = _Precision.own
+        if outer == bits and not checked:
+            return compute()
         try:  # without a call before it and first in its `finally`: Ctrl-C arrives at calls
             if not outer:
                 _Precision.host = ctx.prec
-            ctx.prec = _Precision.own = own = int(digits * BITS) + 2
+            ctx.prec = _Precision.own = bits
             try:
                 found = compute()
             except TooFewDigitsError:
-                if ctx.prec == own:
+                if ctx.prec == bits:
                     raise
             else:
-                if ctx.prec == own:
+                if ctx.prec == bits:
                     return found
             _Precision.host = ctx.prec
-            ctx.prec = own
+            ctx.prec = bits
             return compute()
         finally:
             if ctx.prec != _Precision.own:

@@ -123,7 +123,8 @@ class Numbers(dict[str, Any]):
         self.facts, self.digits = facts, digits
 
     def __missing__(self, name: str) -> Any:
-        value = self[name] = at_precision(self.digits, partial(self._value, name))
+        compute = partial(self._value, name)
+        value = self[name] = at_precision(self.digits, compute, checked=False)
         return value
 
     def _value(self, name: str) -> Any:
