@@ -59,12 +59,6 @@ def test_the_record_carries_uncertainties(lagtop: Lagtop, solved: Solved) -> Non
     assert radians["theta_min_rad_std"] == pytest.approx(0.1)
 
 
-def test_a_budget_without_an_uncertain_input_that_matters(lagtop: Lagtop) -> None:
-    shown = lagtop("solve", "--r0", "50(1)", "--budget", "theta_min_deg")
-    assert shown.exit_code == 0, shown.stderr
-    assert "theta_min_deg = 30.0; inputs are taken" in " ".join(shown.stdout.split())
-
-
 def test_a_budget_adds_up(lagtop: Lagtop) -> None:
     arguments = [*BODY, "--theta0", "30(1)", "--budget", "T_nutation"]
     rows = dicts(lagtop("solve", *arguments, "--format", "csv").stdout)
@@ -118,17 +112,6 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
-
-
-def test_a_table_has_uncertainties_in_radians_and_of_chosen_angles(lagtop: Lagtop) -> None:
-    result = lagtop("table", "--theta0", "30(1)", "--columns", "t,psi,axis", "--n", 2, "--t-max", 1)
-    columns = "psi_deg,axis_x,axis_y,axis_z"
-    header = f"t,{columns},{columns.replace(',', '_std,')}_std"
-    assert result.stdout.splitlines()[0] == header
-    angles = ["--rad", "--theta0", "0.5(1)", "--columns", "theta", "--n", 2, "--t-max", 1]
-    lines = lagtop("table", *angles).stdout.splitlines()
-    assert lines[0] == "theta_rad,theta_rad_std"
-    assert float(lines[1].partition(",")[2]) == pytest.approx(0.1)
 
 
 def test_random_tops_have_about_the_same_uncertainties(lagtop: Lagtop) -> None:
