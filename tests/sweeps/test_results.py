@@ -49,16 +49,6 @@ def test_the_index_of_a_frame_is_kept() -> None:
         sweep(r0=frame.r0, theta0_deg=frame.theta0_deg[::-1])
 
 
-def test_results_are_printed_as_a_short_table() -> None:
-    assert repr(GRID).splitlines()[:3] == [
-        "6 tops, shape (3, 2)",
-        "r0                            20          20         ...          60          60",
-        "theta0_deg                     0          30         ...           0          30",
-    ]
-    assert repr(sweep(keys=["remark", "K"])).split()[-3:] == ["None", "K", "1.9298"]
-    assert repr(sweep(r0=[], keys=["K"])).split() == ["0", "tops,", "shape", "(0,)", "K"]
-
-
 def test_named_dimensions_are_refused() -> None:
     with pytest.raises(LagtopError, match=r"r0 has named dimensions: pass r0.to_numpy"):
         sweep(r0=xarray.DataArray(SPINS, dims="run"))

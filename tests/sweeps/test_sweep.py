@@ -173,13 +173,6 @@ def test_dicts(tmp_path: Path, lagtop: Lagtop) -> None:
     )
 
 
-def test_a_tilt_in_radians_over_one_in_degrees(lagtop: Lagtop) -> None:
-    keys = ["--rad", "--keys", "theta0_rad", "sample_inputs/simo-wong-1991.toml"]
-    assert lagtop("sweep", "--theta0", "0.25", *keys).stdout == "theta0_rad\n0.25\n"
-    found = lagtop("sweep", *keys, "-", input="theta0_deg\n180\n").stdout
-    assert found == f"theta0_rad,error\n{math.pi},\n"
-
-
 def test_rows_of_json(lagtop: Lagtop) -> None:
     text = '{"id": 1, "r0": 40}\n{"id": {"x": [2]}, "theta0_rad": 1, "r0": 7}\n{"r0": true}\n'
     text += '{"r0": "500(5)"}\n'
