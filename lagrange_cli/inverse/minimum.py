@@ -27,8 +27,6 @@ _SHARE = 0.05
 """Share of a parameter in such a direction from which it is not determined either."""
 _LEAST = 2.0
 """Standard deviations by which a > 0."""
-_FASTEST = 1e6
-"""Largest b^2/a at which a is determined."""
 _APART = 4.0
 """Standard deviations between different tops."""
 _BENT = 2.0
@@ -122,8 +120,7 @@ def minimum_at(problem: Problem, x: Array) -> Minimum:
     sure = values > _DEPENDENT * values[0]
     loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
     spread = rows[sure].T / values[sure] / size[:, np.newaxis]
-    a, b = x[0, :2]
-    loose[0] |= a <= max(_LEAST * np.linalg.norm(spread[0]), b * b / _FASTEST)  # a <= 0 is no top
+    loose[0] |= x[0, 0] <= _LEAST * np.linalg.norm(spread[0])  # a <= 0 is no top
     meant = {"tilt": "theta0", "lean": "psi_zero", "p": "thetadot0", "q": "psidot0"}
     unknown = (meant.get(y, y) for y, z in zip(problem.names, loose, strict=True) if z)
     return Minimum(problem, x[0], spread, (*unknown,))

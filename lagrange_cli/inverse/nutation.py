@@ -39,9 +39,11 @@ _DERIVED = (
     *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
     *("theta_min_rad", "theta_max_rad", "stability_factor", *_ELEMENTARY),
 )
-_UNSURE, _OPEN = 0.1, 0.25
+_UNSURE = 0.1
 """Standard deviations of the tilt over its distance from a pole, beyond which the precession in the
-first row is not determined, and beyond which the sign of the nutation rate is not."""
+first row is not determined."""
+_OPEN = 0.25
+"""The same for the sign of the nutation rate."""
 _IMPROVED = 0.999
 """Standard deviation of a known input after the fit, over the given one, from which it is new."""
 _KNOWN = 1e-4

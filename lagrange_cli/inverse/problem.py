@@ -29,10 +29,8 @@ _FAR = 1e3
 """Weighted residual of a motion that does not exist."""
 _AT_ONCE = 50_000
 """Angles that are computed at once."""
-_ESTIMATES = 6
-"""Most estimates of the noise from the residuals."""
-_SETTLED = 0.02
-"""Relative change of such an estimate that ends them."""
+_ESTIMATES = 3
+"""Estimates of the noise from the residuals."""
 Ties = Callable[[dict[str, Array]], Array]
 """Distances of motions from known inputs, in standard deviations, in the last axis."""
 
@@ -163,9 +161,7 @@ class Problem:
         problem = self
         for _ in range(_ESTIMATES):
             x, _ = problem.solve(x, steps)
-            old, problem = problem, problem.with_noise(x, least)
-            if np.allclose(old.sizes, problem.sizes, rtol=_SETTLED):
-                break
+            problem = problem.with_noise(x, least)
         return problem, x
 
 

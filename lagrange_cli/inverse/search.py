@@ -43,14 +43,10 @@ from .spins import FASTER, HALF, reversed_note
 from .starts import best_starts, distinct
 from .steady import steady_outcome
 
-_STARTS = (12, 40)
-"""Starts of the least squares, with and without a recorded tilt."""
+_STARTS = 20
+"""Starts of the least squares."""
 _STAGES = ((60, 8, 1.0, 4), (250, 20, 0.1, 3))
 """Rows, steps, promised fall of chi^2 that ends them, and ends that are kept, by stage."""
-_IN_PHASE = 0.7
-"""Largest rms residual of the spin, in radians, of a motion that is in phase."""
-_HOPELESS = 50.0
-"""Mean square of weighted residuals that no top explains."""
 _COMPARABLE = 5.0
 """Factor of the least chi^2 beyond which an end is dropped."""
 _LIKELY = 16.0
@@ -229,8 +225,8 @@ def _minima(
     noise = ways[0].sigma or noise_of(each[0], 1.0, ways[0])
     sizes = np.maximum([noise[x] for x in ways[0].channels], floors)
     for way, signals in zip(ways, each, strict=True):
-        count = _STARTS["theta" not in way.angles]
-        problem, x = problem_of(way, sizes, *best_starts(way, signals, sizes, known, count), ties)
+        found_starts = best_starts(way, signals, sizes, known, _STARTS)
+        problem, x = problem_of(way, sizes, *found_starts, ties)
         if not len(x):
             continue
         for rows, steps, gain, kept in _STAGES:
@@ -243,7 +239,7 @@ def _minima(
         return []
     least, problem, x = min(found, key=lambda y: y[0])
     few = problem.thinned(_STAGES[-1][0])
-    if least > _HOPELESS * problem.recording.present.sum() or largest(few, x) > LARGEST:
+    if largest(few, x) > LARGEST:
         return [replace(minimum_at(problem, x), is_hopeless=True)]
     return [converged(y, z, floors) for chi2, y, z in found if chi2 <= _COMPARABLE * least]
 
@@ -256,7 +252,7 @@ def _rephased(problem: Problem, x: Array) -> tuple[Problem, Array]:
     rest = problem.residuals(x[:, np.newaxis])[:, 0, one.channels.index(one.spin_channel)]
     for i, y in enumerate(rest):
         seen = np.isfinite(y)
-        if seen.any() and np.mean(y[seen] ** 2) > _IN_PHASE**2:
+        if seen.any():
             rate = mean_rate(one.t[seen], y[seen], one.frame)
             x[i, problem.names.index("r0")] += rate
             first[i, 1] += np.angle(np.sum(np.exp(1j * (y[seen] - rate * one.t[seen]))))

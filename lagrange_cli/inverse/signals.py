@@ -16,11 +16,16 @@ from scipy.optimize import minimize_scalar
 from ..arithmetic.types import Array
 from .measured import ANGLE_OF, Measured, are_whole
 
-_MOST_ROWS, _STEP, _EXACT, _ROWS_PER_PERIOD = 700, 0.12, 1e-5, 2.2
-"""Rows of the search for a frequency, its step and its precision over the inverse duration, and its
-end."""
-_CELLS, _MOST_CELLS = 8, 1 << 20
-"""Cells per frame, and their greatest number, for the spectrum of an angle at uneven times."""
+_MOST_ROWS = 700
+"""Rows of the search for a frequency."""
+_STEP = 0.12
+"""Its step, over the inverse duration."""
+_ROWS_PER_PERIOD = 2.2
+"""Rows per period at which it ends."""
+_CELLS = 8
+"""Cells per frame for the spectrum of an angle at uneven times."""
+_MOST_CELLS = 1 << 20
+"""Their greatest number."""
 _CLEAR = (9.0, 5.5)
 """Gain of the log-likelihood by harmonics, and more per angle, from which a nutation is visible.
 
@@ -30,7 +35,7 @@ _TIED = 0.3
 """Loss of the log of the noise, per angle, up to which a higher frequency is preferred."""
 _ROWS_OF_NOISE = 2000
 """Means of rows to which harmonics of one frequency are fitted."""
-NEAR_POLE = 0.1
+_NEAR_POLE = 0.1
 """Distance from a pole, in radians, below which the axis may pass over it or begin on it."""
 _WITHOUT_LARGEST = 0.623
 """Mean square of normal numbers without the largest tenth."""
@@ -71,18 +76,17 @@ class Signal(NamedTuple):
         return np.asarray(factors[..., 0], float), noise
 
     def finest(self, frequency: float) -> tuple[Array, float]:
-        """Return the same at one frequency for the order that leaves the least noise, of a row."""
+        """Return the same at one frequency for as many harmonics as rows show, noise of a row."""
         few = self.averaged(_ROWS_OF_NOISE)
-        orders = (4, 8, 16) if few.y.size > 100 else (4,) if few.y.size > 20 else (1,)
-        found = (few.harmonics(np.array([frequency]), x) for x in orders)
-        factors, noise = min(found, key=lambda x: x[1])
+        order = 8 if few.y.size > 100 else 4 if few.y.size > 20 else 1
+        factors, noise = few.harmonics(np.array([frequency]), order)
         return factors[0], float(noise[0]) * math.sqrt(self.y.size / few.y.size)
 
 
 def passes_pole(tilt: Signal) -> bool:
     """Return whether the axis comes so near to a pole that spin and precession may jump there."""
     distance = math.pi / 2 - np.abs(np.arcsin(tilt.y))
-    return bool(distance.min() < min(NEAR_POLE, distance.max() / 5))
+    return bool(distance.min() < min(_NEAR_POLE, distance.max() / 5))
 
 
 def signals_in(recording: Measured) -> dict[str, Signal]:
@@ -162,7 +166,7 @@ def _best_frequency(used: list[Signal]) -> tuple[float, float, float]:
     refined = []
     for i in dips[np.argsort(found[dips])][:4].tolist():
         how = {"bounds": (tried[i - 1], tried[i + 1]), "args": (order_at(float(tried[i + 1])),)}
-        exact = {"method": "bounded", "options": {"xatol": _EXACT / span}}
+        exact = {"method": "bounded", "options": {"xatol": 1e-5 / span}}
         refined.append(minimize_scalar(lambda *at: noise(*at)[0], **how, **exact))
     if not refined:
         return 1 / span, -1.0, span

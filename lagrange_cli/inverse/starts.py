@@ -15,15 +15,14 @@ import numpy as np
 from ..arithmetic.types import Array
 from .measured import Measured
 from .motions import angles, nutating, states_of
-from .signals import NEAR_POLE, Signal, passes_pole
+from .signals import Signal, passes_pole
 
 _HEIGHTS = np.concatenate([[1e-6], 10.0 ** np.linspace(-4, 8, 73)])
 """Values of (u3 - 1)/(1 - u2) between which a mean precession rate is searched for."""
-_NEAR_POLE = np.array([0.01, 0.03, 0.06, 0.1, 0.17, 0.27, 0.4])
-_TILTS = np.concatenate([_NEAR_POLE, np.linspace(0.55, np.pi - 0.55, 15), np.pi - _NEAR_POLE[::-1]])
+_TILTS = np.arccos(np.linspace(0.9995, -0.9995, 25))
 """If the tilt is not recorded: turning points to try."""
-_SWINGS = (0.01, 0.04, 0.15)
-"""The same: small nutations, over their distance from a pole."""
+_SWING = 0.04
+"""The same: a small nutation, over its distance from a pole."""
 _PHASES = np.sin(np.linspace(0, np.pi / 2, 9)) ** 2
 """The same: places of the start between the turning points."""
 _POLE = 1e-4
@@ -86,34 +85,23 @@ def starts(signals: Mapping[str, Signal], tilt: float | None) -> Array:
 
 
 def _turning_points(tilt: Signal) -> tuple[Array, Array, Array]:
-    """Return pairs of turning points near those of the harmonics, and cosines at the start.
-
-    An axis that comes near a pole may pass over it, and begin beside it.
-    """
+    """Return pairs of turning points, of the harmonics or recorded, and the cosine at the start."""
     factors, _ = tilt.finest(1.0)
     phases, order = np.linspace(0, 1, 720), factors.size // 2
     wave = factors @ tilt.basis(phases, np.array([1.0]), order)[0]
-    ends = np.arccos(np.clip([wave.max(), wave.min()], -1, 1))
-    seen = np.arccos([tilt.y.max(), tilt.y.min()])
-    room = math.pi - seen[1]
-    lows, highs = [ends[0], seen[0], seen[0] / 3], [ends[1], seen[1], math.pi - room / 3]
-    start = [math.acos(np.clip(wave[0], -1, 1))]
-    if passes_pole(tilt):
-        lows.append(0.0)
-        highs.append(math.pi)
-        start += [x for x in (10 * _POLE, math.pi - 10 * _POLE) if abs(x - start[0]) < NEAR_POLE]
-    pairs = np.stack(np.meshgrid(lows, highs)).reshape(2, -1)
+    ends = np.clip([[wave.max(), tilt.y.max()], [wave.min(), tilt.y.min()]], -1, 1)
+    pairs = np.stack(np.meshgrid(*np.arccos(ends))).reshape(2, -1)
     least, greatest = np.clip(pairs, _POLE, math.pi - _POLE)
     inside = least < greatest
-    return least[inside], greatest[inside], np.cos(start)
+    return least[inside], greatest[inside], wave[:1]
 
 
 def _grid() -> tuple[Array, Array]:
     """Return turning points to try: all pairs of a grid, and close pairs."""
     one, other = np.triu_indices(_TILTS.size, 1)
     room = np.minimum(_TILTS, math.pi - _TILTS)
-    least = np.concatenate([_TILTS[one], *(_TILTS - swing * room for swing in _SWINGS)])
-    return least, np.concatenate([_TILTS[other], *[_TILTS] * len(_SWINGS)])
+    least = np.concatenate([_TILTS[one], _TILTS - _SWING * room])
+    return least, np.concatenate([_TILTS[other], _TILTS])
 
 
 def best_starts(

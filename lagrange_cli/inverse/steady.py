@@ -28,9 +28,10 @@ from .reasons import Kind, Reason
 from .signals import Signal
 from .spins import FASTER, reversed_note, slowest_rate
 
-_MOST_TILT, _LEAST_ROWS = 0.04, 30
-"""Largest scatter of the tilt in radians that counts as noise, and the least number of rows that
-shows a nutation, if sigma is not given."""
+_MOST_TILT = 0.04
+"""Largest scatter of the tilt in radians that counts as noise, if sigma is not given."""
+_LEAST_ROWS = 30
+"""Least number of rows that shows a nutation, if sigma is not given."""
 _LEAST, _MOST = 0.05, 2.0
 """Bounds of C/A if it is not known."""
 _MOST_BIAS = 0.8
