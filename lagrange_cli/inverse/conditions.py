@@ -29,7 +29,7 @@ from .known import (
     time_power,
 )
 from .problem import Ties
-from .spins import HALF, whole_turns
+from .spins import whole_turns
 
 _EXACT = 1e-5
 """Standard deviation of an exact input, in units of the period, if the recording alone does not
@@ -241,5 +241,5 @@ def _spin(vector: Vector, turn: float) -> tuple[float | None, bool]:
     value, std, _ = pair["r0"]
     if abs(value) > _MOST_TURNS * turn:
         return None, True
-    is_sure = abs(value) <= HALF * turn or std * _SELECTS <= turn
+    is_sure = abs(value) <= turn / 2 or std * _SELECTS <= turn
     return value if is_sure else None, is_sure

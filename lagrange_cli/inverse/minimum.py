@@ -25,18 +25,16 @@ _DEPENDENT = 1e-7
 """Ratio of singular values of the slopes below which a direction is not determined."""
 _SHARE = 0.05
 """Share of a parameter in such a direction from which it is not determined either."""
-_LEAST = 2.0
-"""Standard deviations by which a > 0."""
+SURE = 2.0
+"""Standard deviations from which a > 0, and b and r0 have a sign."""
 _APART = 4.0
-"""Standard deviations between different tops."""
+"""Standard deviations of a or b between different tops, and off a straight valley."""
 _BENT = 2.0
 """Growth of chi^2 over that of a parabola from which the floor of a bent valley is searched."""
 _BROKEN = 6.0
 """The same on both sides of a valley without a floor."""
 _STIFF = 100.0
 """Weight of the distance at which the floor is searched."""
-_ASIDE = 5.0
-"""Standard deviations by which a or b may be off a straight valley."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +118,7 @@ def minimum_at(problem: Problem, x: Array) -> Minimum:
     sure = values > _DEPENDENT * values[0]
     loose = np.abs(rows[~sure]).max(axis=0, initial=0.0) > _SHARE
     spread = rows[sure].T / values[sure] / size[:, np.newaxis]
-    loose[0] |= x[0, 0] <= _LEAST * np.linalg.norm(spread[0])  # a <= 0 is no top
+    loose[0] |= x[0, 0] <= SURE * np.linalg.norm(spread[0])  # a <= 0 is no top
     meant = {"tilt": "theta0", "lean": "psi_zero", "p": "thetadot0", "q": "psidot0"}
     unknown = (meant.get(y, y) for y, z in zip(problem.names, loose, strict=True) if z)
     return Minimum(problem, x[0], spread, (*unknown,))
@@ -176,22 +174,22 @@ def shaped(found: Minimum) -> Minimum:
         floor, chi2 = descended(rest, ends[bent], 20)
         grown[bent] = chi2 / 4
         stds = np.linalg.norm(found.spread[:2], axis=1) + 1e-300
-        is_aside = bool(np.any(np.abs(floor - ends[bent])[:, :2] / stds > _ASIDE))
+        is_aside = bool(np.any(np.abs(floor - ends[bent])[:, :2] / stds > _APART))
     least = grown.reshape(2, -1).min(axis=0, initial=np.inf)
     factors = np.sqrt(1 / np.clip(least, 1e-2, 1))
     is_curved = is_aside or bool(np.any(least > _BROKEN))
     return replace(found, spread=found.spread * factors, is_curved=is_curved)
 
 
-def slowest(found: Minimum, turn: float, sure: float) -> Minimum:
+def slowest(found: Minimum, turn: float) -> Minimum:
     """Return a minimum with the slowest spin of a rigid body that looks alike in the rows.
 
-    Its b has a sign, and r0 with it, if it is `sure` standard deviations from 0.
+    Its b has a sign, and r0 with it, if it is SURE standard deviations from 0.
     """
     if not turn or not found.spins or found.problem.ties:
         return found
     v, std = found.values, found.std("b")
-    rate = slowest_rate(v["r0"], turn, v["b"] if abs(v["b"]) > sure * std else 0.0, std)
+    rate = slowest_rate(v["r0"], turn, v["b"] if abs(v["b"]) > SURE * std else 0.0, std)
     return found.turned(rate - v["r0"]) if rate not in {v["r0"], math.inf} else found
 
 

@@ -24,7 +24,7 @@ from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .conditions import Comparison, compare, ties_of
 from .known import START, Known, in_all_forms, scaled_known, time_power
 from .measured import ANGLE_OF, LEAST_ROWS, Measured
-from .minimum import MOST_ROWS, Minimum, converged, largest, minimum_at, slowest
+from .minimum import MOST_ROWS, SURE, Minimum, converged, largest, minimum_at, slowest
 from .nutation import nutating_outcome
 from .outcome import Outcome
 from .problem import Problem, Ties, problem_of
@@ -39,7 +39,7 @@ from .signals import (
     signals_in,
     step_between,
 )
-from .spins import FASTER, HALF, reversed_note
+from .spins import FASTER, reversed_note
 from .starts import best_starts, distinct
 from .steady import steady_outcome
 
@@ -51,8 +51,6 @@ _COMPARABLE = 5.0
 """Factor of the least chi^2 beyond which an end is dropped."""
 _LIKELY = 16.0
 """Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
-_SURE = 2.0
-"""Standard deviations from which b has a sign, and r0 with it."""
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
 _Noise = Mapping[str, Noise]
@@ -182,7 +180,7 @@ def _nutation(
     if is_tied:
         found.vector.known = {x: y for x, y in inputs.items() if x != "steady"}
     turns = abs(best.values["r0"]) / turn if turn and best.spins else 0.0
-    is_sure = abs(best.values["b"]) > _SURE * best.std("b")
+    is_sure = abs(best.values["b"]) > SURE * best.std("b")
     seen = "phi" in recording.angles and "r0" not in all_replaced(known)
     ratio, error = (x / (best.values["r0"] or math.inf) for x in (best.values["b"], best.std("b")))
     if recording.angles.keys() == {"theta", "phi"} and abs(ratio - 1) < 3 * error:
@@ -195,7 +193,7 @@ def _nutation(
         replace(best.problem.recording, t=recording.t),
         scale,
         noise=noise,
-        is_spin_known=not seen or (is_sure and turns < HALF),
+        is_spin_known=not seen or (is_sure and turns < 0.5),
         is_even=bool(turn),
         rival=_shown(rival, scale) if rival else "",
         known=known,
@@ -210,7 +208,7 @@ def _refined(best: Minimum, floors: Array, turn: float) -> Minimum:
     if not best.is_hopeless:
         factors = _widening(best, floors)
         best = converged(best.problem, best.x[np.newaxis], floors, factors, final=True)
-    return slowest(best, turn, _SURE)
+    return slowest(best, turn)
 
 
 def _minima(
@@ -225,8 +223,8 @@ def _minima(
     noise = ways[0].sigma or noise_of(each[0], 1.0, ways[0])
     sizes = np.maximum([noise[x] for x in ways[0].channels], floors)
     for way, signals in zip(ways, each, strict=True):
-        found_starts = best_starts(way, signals, sizes, known, _STARTS)
-        problem, x = problem_of(way, sizes, *found_starts, ties)
+        states, zeros = best_starts(way, signals, sizes, known, _STARTS)
+        problem, x = problem_of(way, sizes, states, zeros, ties)
         if not len(x):
             continue
         for rows, steps, gain, kept in _STAGES:
@@ -281,7 +279,7 @@ def _chosen(
     mirror image whose a or b has another size is a rival, too, unless its spin is much faster than
     one that is slow.
     """
-    slow = [slowest(x, turn, _SURE) for x in minima]
+    slow = [slowest(x, turn) for x in minima]
     levels = [x.badness() for x in slow]
     order = [i for i in np.argsort(levels).tolist() if levels[i] < min(levels) + _LIKELY]
     likely = [slow[i] for i in order]
@@ -314,7 +312,7 @@ def _assumed(found: Comparison, faster: float, turns: float, turn: float) -> lis
         notes.append(
             f"psi may count in the other direction, if the spin makes {faster:.2g} turns per row"
         )
-    if turns > HALF:
+    if turns > 0.5:
         how = "rate that C selects" if found.is_selected else "slowest possible rate"
         notes.append(
             "the spin exceeds half a turn per row: r0 is known only up to multiples of "

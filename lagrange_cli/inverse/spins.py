@@ -8,8 +8,6 @@ import numpy as np
 
 FASTER = 3.0
 """Ratio of spin rates from which the slower one tells the direction of psi."""
-HALF = 0.5
-"""Turns per row from which a spin is not the visible one."""
 _TRIED = np.arange(-3, 4)
 """Whole turns per row that are tried."""
 

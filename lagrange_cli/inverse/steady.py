@@ -111,7 +111,7 @@ def _mean(
     mean is known to a step, and the rate to a step over the duration.
     """
     is_tilt, middle = name == "theta", signal.t.mean()
-    y = np.arccos(np.clip(signal.y, -1, 1)) if is_tilt else signal.y + signal.rate * signal.t
+    y = signal.y + signal.rate * signal.t
     if is_tilt:
         y = recording.angles[name][np.isfinite(recording.angles[name])]
     around = signal.t - middle
@@ -250,21 +250,16 @@ def _direction(
     faster.
     """
     psi, spin = means.get("psi", _NONE), means["phi"].value
-    along = psi.value * math.cos(tilt)
-    rate, other = (slowest_rate(spin + x * along, turn, x * psi.value) for x in (1, -1))
-    if recording.kind == "angles" and FASTER * abs(other) < abs(rate):
-        notes.append(reversed_note(abs(rate) / turn if turn else 0.0))
-        recording, psi, along, rate = (
-            recording.mirrored,
-            _Mean(-psi.value, psi.std, -psi.start),
-            -along,
-            other,
-        )
-        means = means | {"psi": psi}
-    elif rate == math.inf:
-        rate = spin + along
+    visible = [spin + x * psi.value * math.cos(tilt) for x in (1, -1)]
+    rates = [slowest_rate(y, turn, x * psi.value) for x, y in zip((1, -1), visible, strict=True)]
+    way = int(recording.kind == "angles" and FASTER * abs(rates[1]) < abs(rates[0]))
+    if way:
+        notes.append(reversed_note(abs(rates[0]) / turn if turn else 0.0))
+        psi = _Mean(-psi.value, psi.std, -psi.start)
+        recording, means = recording.mirrored, means | {"psi": psi}
+    rate = rates[way] if math.isfinite(rates[way]) else visible[way]
     is_sure = not turn or (abs(rate) * (1 + FASTER) < turn and psi.value * rate > 0)
-    return recording, means, rate - spin - along, is_sure
+    return recording, means, rate - visible[way], is_sure
 
 
 def _faults(

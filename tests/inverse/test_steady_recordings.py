@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from lagtop import LagtopError, Top, fit, solve
-from noisy_recordings import TOP, fitted, pulls, recorded, recording_from
+from noisy_recordings import LAB, TOP, fitted, pulls, recorded, recording_from
 
 from lagrange_cli.inverse.search import best_fit
 
@@ -75,6 +75,19 @@ def test_a_known_spin_is_compared_with_the_visible_one(known: dict[str, Any], sa
     assert outcome.verdict == ("failed" if said else "good, no nutation")
     assert (outcome.distances[name] < 3) == (not said)
     assert said in "; ".join(outcome.failures())
+
+
+@pytest.mark.parametrize("r0", [400, 1500, -1500])
+def test_a_known_moment_selects_the_spin(r0: float) -> None:
+    """Whole turns per row, 1244 rad/s, are invisible, but C r0 = 2mgs b/a is not."""
+    t, seen = recorded(
+        "theta", "phi", "psi", top=TOP.replace(r0=r0), rows=100, seconds=0.5, seed=15
+    )
+    found = fitted(t, seen, known=LAB | {"C": 2.5e-3})
+    assert abs(found.numbers["r0"].value - r0) < 4 * found.numbers["r0"].std < 0.2
+    assert found.distances["C"] < 3
+    unsure = fitted(t, seen, known=LAB | {"C": "0.0025(5)"})
+    assert any(x.startswith("known C is not used") for x in unsure.notes) == (abs(r0) > 622)
 
 
 def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
