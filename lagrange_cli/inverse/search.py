@@ -43,10 +43,12 @@ from .spins import FASTER, reversed_note
 from .starts import best_starts, distinct
 from .steady import steady_outcome
 
-_STARTS = 20
-"""Starts of the least squares."""
+_STARTS = (12, 40)
+"""Starts of the least squares, with and without a recorded tilt."""
 _STAGES = ((60, 8, 1.0, 4), (250, 20, 0.1, 3))
 """Rows, steps, promised fall of chi^2 that ends them, and ends that are kept, by stage."""
+_IN_PHASE = 0.7
+"""Largest rms residual of the spin, in radians, of a motion that is in phase."""
 _COMPARABLE = 5.0
 """Factor of the least chi^2 beyond which an end is dropped."""
 _LIKELY = 16.0
@@ -223,7 +225,8 @@ def _minima(
     noise = ways[0].sigma or noise_of(each[0], 1.0, ways[0])
     sizes = np.maximum([noise[x] for x in ways[0].channels], floors)
     for way, signals in zip(ways, each, strict=True):
-        states, zeros = best_starts(way, signals, sizes, known, _STARTS)
+        count = _STARTS["theta" not in way.angles]
+        states, zeros = best_starts(way, signals, sizes, known, count)
         problem, x = problem_of(way, sizes, states, zeros, ties)
         if not len(x):
             continue
@@ -250,7 +253,7 @@ def _rephased(problem: Problem, x: Array) -> tuple[Problem, Array]:
     rest = problem.residuals(x[:, np.newaxis])[:, 0, one.channels.index(one.spin_channel)]
     for i, y in enumerate(rest):
         seen = np.isfinite(y)
-        if seen.any():
+        if seen.any() and np.mean(y[seen] ** 2) > _IN_PHASE**2:
             rate = mean_rate(one.t[seen], y[seen], one.frame)
             x[i, problem.names.index("r0")] += rate
             first[i, 1] += np.angle(np.sum(np.exp(1j * (y[seen] - rate * one.t[seen]))))

@@ -19,10 +19,11 @@ from .signals import Signal, passes_pole
 
 _HEIGHTS = np.concatenate([[1e-6], 10.0 ** np.linspace(-4, 8, 73)])
 """Values of (u3 - 1)/(1 - u2) between which a mean precession rate is searched for."""
-_TILTS = np.arccos(np.linspace(0.9995, -0.9995, 25))
+_NEAR_POLE = np.array([0.01, 0.03, 0.06, 0.1, 0.17, 0.27, 0.4])
+_TILTS = np.concatenate([_NEAR_POLE, np.linspace(0.55, np.pi - 0.55, 15), np.pi - _NEAR_POLE[::-1]])
 """If the tilt is not recorded: turning points to try."""
-_SWING = 0.04
-"""The same: a small nutation, over its distance from a pole."""
+_SWINGS = (0.01, 0.04, 0.15)
+"""The same: small nutations, over their distance from a pole."""
 _PHASES = np.sin(np.linspace(0, np.pi / 2, 9)) ** 2
 """The same: places of the start between the turning points."""
 _POLE = 1e-4
@@ -100,8 +101,8 @@ def _grid() -> tuple[Array, Array]:
     """Return turning points to try: all pairs of a grid, and close pairs."""
     one, other = np.triu_indices(_TILTS.size, 1)
     room = np.minimum(_TILTS, math.pi - _TILTS)
-    least = np.concatenate([_TILTS[one], _TILTS - _SWING * room])
-    return least, np.concatenate([_TILTS[other], _TILTS])
+    least = np.concatenate([_TILTS[one], *(_TILTS - swing * room for swing in _SWINGS)])
+    return least, np.concatenate([_TILTS[other], *[_TILTS] * len(_SWINGS)])
 
 
 def best_starts(
