@@ -90,21 +90,20 @@ def descended(
     return x, least
 
 
-def polished(function: Function, x: Array, most: int) -> Array:
+def polished(function: Function, x: Array, steps: int) -> Array:
     """Return the least squares of very many numbers near those of some, shape (1, parameters).
 
-    Steps of Gauss and Newton keep the slopes of the first.
+    Steps of Gauss and Newton keep the slopes of the first, unless chi^2 grows.
     """
-    who, least = np.zeros(1, int), np.inf
+    who = np.zeros(1, int)
     rest, rise = slopes(function, x, who, central=False)
     inverse = np.linalg.pinv(rise[0].T @ rise[0], hermitian=True)
-    best, chi2 = x, float(np.sum(rest**2))
-    for _ in range(most):
-        down = rest[0] @ rise[0]
-        if chi2 >= least or down @ inverse @ down < _SMALL:
-            break
-        least, best = chi2, x
+    best, chi2, least = x, float(np.sum(rest**2)), np.inf
+    while chi2 < least:
+        best, least, down = x, chi2, rest[0] @ rise[0]
+        if down @ inverse @ down < _SMALL:
+            return x
         x = x - inverse @ down
         rest = function(x[:, np.newaxis], who)[:, 0]
         chi2 = float(np.sum(rest**2))
-    return x if chi2 < least else best
+    return descended(function, best, steps, gain=_SMALL, central=False)[0]

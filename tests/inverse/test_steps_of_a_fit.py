@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from lagtop import fit
 from machines import filtered
+from scipy.optimize import curve_fit
 
 from lagrange_cli.inverse.checks import CHANCE, Residuals
 from lagrange_cli.inverse.decay import decay_of
-from lagrange_cli.inverse.descent import descended
+from lagrange_cli.inverse.descent import descended, polished
 from lagrange_cli.inverse.known import compared
 from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.signals import (
@@ -35,6 +36,20 @@ def test_a_bent_valley_is_followed_to_its_end() -> None:
         ends, chi2 = descended(valley, starts, 40, gain=1e-12, central=central)
         assert ends == pytest.approx(1, abs=1e-5)
         assert chi2.max() < 1e-10
+    end = polished(valley, starts[1:2], 40)  # chi^2 would grow by steps with the first slopes
+    assert np.sum(valley(end[:, np.newaxis], [0]) ** 2) < 0.1
+
+
+def test_many_rows_are_fitted_from_the_fit_of_some() -> None:
+    t = np.linspace(0, 1, 20_000)
+    y = 2 * np.exp(-3 * t) + np.random.default_rng(4).normal(scale=0.1, size=t.size)
+
+    def rest(x: Any, _: Any) -> Any:
+        return (y - x[..., :1] * np.exp(-x[..., 1:] * t)) / 0.1
+
+    exact, covariance = curve_fit(lambda t, size, rate: size * np.exp(-rate * t), t, y, (2, 3))
+    found = polished(rest, exact[np.newaxis] + [[0.05, 0.3]], 40)[0]
+    assert np.all(np.abs(found - exact) < 0.32 * np.sqrt(np.diag(covariance)))  # chi^2 falls by 0.1
 
 
 @pytest.mark.parametrize("factor", [30 / math.pi, 60, 1e3, 1e7])
