@@ -98,10 +98,10 @@ def best_fit(
 
 def _noise(recording: Measured, signals: Mapping[str, Signal]) -> dict[str, Noise]:
     """Return what the data show of the noise of each channel."""
-    ranges = {x: float(np.subtract(*np.quantile(y.y, (0.975, 0.025)))) for x, y in signals.items()}
+    smooth = {x: y.y for x, y in signals.items()}
     if "theta" in recording.angles:
-        tilt = recording.angles["theta"][np.isfinite(recording.angles["theta"])]
-        ranges["theta"] = float(np.subtract(*np.quantile(tilt, (0.975, 0.025))))
+        smooth["theta"] = recording.angles["theta"][np.isfinite(recording.angles["theta"])]
+    ranges = {x: float(np.subtract(*np.quantile(y, (0.975, 0.025)))) for x, y in smooth.items()}
     if recording.kind != "angles":
         tilt, psi = (recording.angles[x][recording.present[0]] for x in ("theta", "psi"))
         axis = rotations.axis_of(rotations.of_angles(tilt, np.zeros_like(tilt), psi))
@@ -110,9 +110,8 @@ def _noise(recording: Measured, signals: Mapping[str, Signal]) -> dict[str, Nois
         return {x: both.get(x, Noise()) for x in recording.channels}
     found = {}
     for name in recording.channels:
-        values = recording.angles[name][np.isfinite(recording.angles[name])]
-        smooth = values if name == "theta" else signals[name].y
-        found[name] = Noise(step_between(values), neighbour_noise(smooth), ranges[name])
+        step = step_between(recording.angles[name][np.isfinite(recording.angles[name])])
+        found[name] = Noise(step, neighbour_noise(smooth[name]), ranges[name])
     coarsest = max(x.step for x in found.values())
     return {x: y._replace(step=y.step or coarsest) for x, y in found.items()}
 
