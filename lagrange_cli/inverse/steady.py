@@ -225,7 +225,7 @@ def _factor(vector: Vector, notes: list[str], *, is_sure: bool) -> _Pair | None:
     if "A" in body and ("C" in body or body.keys() >= WEIGHT):
         return 1.0, 0.0
     if not is_sure:  # psi may count in the other direction, or the spin be faster
-        r0 = math.copysign(min(abs(r0), abs(r0 - 2 * along)), r0)
+        r0 = math.copysign(min(abs(r0), abs(vector.z[2] - along)), r0)
     shares = [along / (r0 * _LEAST), along / (r0 * _MOST) * is_sure]
     if max(shares) > _MOST_BIAS:
         notes.append("b/a is not determined: A Omega cos(theta) may be as large as C r0")

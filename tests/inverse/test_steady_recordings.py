@@ -90,6 +90,23 @@ def test_a_known_moment_selects_the_spin(r0: float) -> None:
     assert any(x.startswith("known C is not used") for x in unsure.notes) == (abs(r0) > 622)
 
 
+def test_a_toy_that_turns_faster_than_its_frames() -> None:
+    """At 1.6 turns per frame, b/a allows for any C/A and either direction of psi."""
+    body = {"m": 0.1, "s": 0.04, "g": 9.81}
+    top = Top(**body, A=4e-4, C=8e-5, r0=300, theta0_deg=60, psidot0="steady")
+    t, seen = recorded("theta", "phi", "psi", top=top, rows=300, seconds=10, noise=0.5, seed=6)
+    outcome = fitted(t, seen, known=body)
+    assert outcome.verdict == "good, no nutation"
+    ratio, product = (outcome.numbers[x] for x in ("b/a", "C*r0"))
+    assert 8e-5 * 300 / (2 * 0.1 * 0.04 * 9.81) == pytest.approx(ratio.value, abs=2 * ratio.std)
+    assert product.value - 2 * product.std < 8e-5 * 300 < product.value + 2 * product.std
+    share = 0.829 / (78.65 * 0.05)  # of A Omega cos(theta) if psi counts the other way, C = A/20
+    widest = share / (2 - share) / 1.75
+    assert ratio.std / ratio.value == pytest.approx(widest, rel=0.05)
+    found = fitted(t, seen, known=body | {"C": 8e-5}).numbers["r0"]
+    assert abs(found.value - 300) < 4 * found.std < 0.2
+
+
 def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
     rng, t = np.random.default_rng(17), np.linspace(0, 1, 100)
     psi = 2 * t + rng.normal(scale=0.01, size=100)
