@@ -21,8 +21,9 @@ TRUSTED = 0.01
 """Largest relative residual of the axis with which ratios are printed."""
 _MOST, _FIRST = 20_000, 8
 """Most rows, and the first rows, from which the rates at the start follow."""
-_OPEN, _SAME, _DECAY = 0.2, 2e-3, 1e-3
-"""Relative errors: of an undetermined parameter, of one that agrees, of a spin that is constant."""
+_OPEN, _SAME, _DECAY, _SURE = 0.2, 2e-3, 1e-3, 1e-4
+"""Relative errors: of an undetermined parameter, of one that agrees, of a constant spin, and of the
+start."""
 _COARSE, _FINE = 0.25, 0.04
 """Turns from row to row, in radians: of a step that may be coarse, and of rows that are left out if
 there are too many."""
@@ -42,6 +43,8 @@ class Estimate(NamedTuple):
     """The decay of the spin per unit of time."""
     start: Array
     """The tilt, thetadot0 and psidot0 sin(theta0)."""
+    start_spread: float
+    """The likely error of the rates at the start."""
     step: float
     span: float
 
@@ -101,7 +104,7 @@ def estimate(top: Top, run: Recording) -> Estimate | None:
         motion.b * earlier / b if b and motion.b_spread < _OPEN * swing else None,
         rate * earlier / r0 if rate is not None and r0 else None,
         decay,
-        _start(seen.t, axis),
+        *_start(seen.t, axis),
         step,
         span,
     )
@@ -142,15 +145,19 @@ def _spin(seen: Observed, r0: float) -> tuple[float | None, float]:
     return float(middle), float(-slope / middle) if middle else 0.0
 
 
-def _start(t: Array, axis: Array) -> Array:
-    """Return the tilt, its rate, and the rate around the vertical in the first row."""
+def _start(t: Array, axis: Array) -> tuple[Array, float]:
+    """Return the tilt, its rate, and the rate around the vertical in the first row, and an error.
+
+    The error is the difference between polynomials of two degrees.
+    """
     t, rows = np.unique(t[: 2 * _FIRST], return_index=True)  # times may repeat
     span, n = np.ptp(t[:_FIRST]), axis[0]
-    rate = np.polyfit((t[:_FIRST] - t[0]) / span, axis[rows][:_FIRST], 5)[-2] / span
+    since, first = (t[:_FIRST] - t[0]) / span, axis[rows][:_FIRST]
+    rate, other = (np.polyfit(since, first, x)[-2] / span for x in (5, 4))
     sine = math.hypot(n[0], n[1])
     slope = -rate[2] / sine if sine > 1e-9 else np.linalg.norm(rate)
     around = (n[0] * rate[1] - n[1] * rate[0]) / (sine or 1.0)
-    return np.array([math.atan2(sine, n[2]), slope, around])
+    return np.array([math.atan2(sine, n[2]), slope, around]), float(np.linalg.norm(rate - other))
 
 
 def sentences(top: Top, found: Estimate) -> Iterator[str]:
@@ -172,7 +179,9 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"the motion is that of a top with {', '.join(parts)}"
     elif known:
         most = max(axis.residual, *(abs(y - 1) for y in known.values()))
-        yield f"the motion is that of the given top, to {most:.2%}: use smaller steps"
+        near = " and ".join(_other_start(top, found, same, kicked=False))
+        but = f", but {near}: check the start, or" if near else ":"
+        yield f"the motion is that of the given top, to {most:.2%}{but} use smaller steps"
     yield from moved
     given = dict(zip("ab", a_and_b(top), strict=True))
     if hidden := [x for x, y in given.items() if y and x not in known]:
@@ -188,15 +197,18 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
         yield f"if each row is a step (r0 dt is {turns:.2g} rad), use smaller steps"
 
 
-def _other_start(top: Top, found: Estimate, same: float) -> Iterator[str]:
-    """Yield the initial tilt and rates that differ; engines stagger rates by half a step."""
+def _other_start(top: Top, found: Estimate, same: float, *, kicked: bool = True) -> Iterator[str]:
+    """Yield the initial tilt and rates that differ.
+
+    Engines stagger rates by half a step: `kicked` allows for that.
+    """
     tilt = float(top.inputs(radians=True)["theta0_rad"])
     given = np.array([tilt, float(top.thetadot0), float(top.psidot0) * math.sin(tilt)])
     (a, b), rate = a_and_b(top), math.hypot(*given[1:])
-    kick = max(same, 0.01) * (math.sqrt(a) + abs(b) + rate)
-    kick += found.step * (a / 2 + abs(b) * rate + rate**2)
+    size, kick = math.sqrt(a) + abs(b) + rate, found.step * (a / 2 + abs(b) * rate + rate**2)
+    most = max(same, 0.01) * size + kick if kicked else 3 * found.start_spread + _SURE * size
     theta, slope, around = found.start
-    is_off = abs(found.start - given) > [same, kick, kick]
+    is_off = abs(found.start - given) > [same if kicked else _SURE, most, most]
     if is_off[0]:
         yield f"theta0 is {math.degrees(theta):.4g} degrees"
     if is_off[1]:

@@ -307,6 +307,17 @@ def test_numbers_of_what_is_in_no_row() -> None:
         )
 
 
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [({"psidot0": 1.4}, "psidot0 is 1.4"), ({"theta0_deg": 55.05}, "theta0 is 55.05 degrees")],
+)
+def test_a_small_change_of_the_start_is_said(inputs: dict[str, float], said: str) -> None:
+    """Steps may be the reason, too: a method staggers rates."""
+    seen = solve(TOP.replace(**inputs)).table(T, ["quaternion"])
+    found = compare(TOP, T, quaternion=np.stack([*seen.values()], axis=1))
+    assert f", but {said}: check the start, or use smaller steps" in (found.numbers or "")
+
+
 def test_rounded_rows_that_are_close_show_the_motion() -> None:
     """From row to row the axis moves by less than a thousand units of the last digit."""
     t = np.linspace(0, 0.5, 200_001)
