@@ -79,6 +79,11 @@ def digits(top: Top, count: int, keys: str) -> str:
     return " ".join(record[key] for key in keys.split())
 
 
+def regimes(top: Top, **change: float) -> str:
+    """Return the regime of a top, and that of a neighbour."""
+    return f"{solve(top).regime.value} | {solve(top.replace(**change)).regime.value}"
+
+
 def row(top: Top, t: str, columns: str) -> str:
     """Return columns at a time in one digit, with radians."""
     table = ProvedTable(solve(top), columns.split(), 1, units=Units(radians=True))
@@ -120,7 +125,9 @@ def columns_known(header: str) -> str:
 
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
 NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
-NAMES |= {x.__name__: x for x in (sentence, unit, numbers, digits, row, derivative, uncertain)}
+NAMES |= {
+    x.__name__: x for x in (sentence, unit, numbers, digits, regimes, row, derivative, uncertain)
+}
 NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 
