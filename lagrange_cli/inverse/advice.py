@@ -6,12 +6,14 @@ import math
 from bisect import bisect_left
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..arithmetic import rotations
 from ..arithmetic.text import shortened
+from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, arg
 from ..recordings.frames import alignment_of, in_frames, own_frames, refined, turn_of
 from ..recordings.misreadings import misreadings
@@ -21,17 +23,17 @@ from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
 from .measured import LEAST_ROWS, Measured, measured
-from .neighbours import DECAY, SLOWING
+from .neighbours import DECAY, SLOWING, lost_text
 from .outcome import GOOD, STEADY, Outcome
 from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
-from .rows import calmness, evenly_timed, likely_gap, release, with_gap
+from .rows import calmness, evenly_timed, release, with_gap
 from .search import best_fit
 
 _BUDGET = 8.0
 """Cost of the fits that are tried; that of a short recording with a tilt is 1, and takes 0.5 s."""
 _LONG = 1500
 """Rows that cost as much again."""
-_WITHOUT_TILT = 5.0
+_WITHOUT_TILT = 3.0
 """Cost of a fit that has to find the tilt."""
 _LEAST_COST = 0.15
 """Cost of a window over that of the whole, at least."""
@@ -43,6 +45,8 @@ _AS_CALM = 0.01
 """Logarithm of the noise beside harmonics that another frame may have more."""
 _AS_NOISY = 0.1
 """Logarithm of the usual residual, per channel, that another reading may have more."""
+_MOST_LOST = 3
+"""Rows that are lost at once at most."""
 _SURE_GAP = 12.0
 """Fall of -2 log(likelihood) by lost rows, besides the cost of the search."""
 _LEAVES = 6.0
@@ -86,13 +90,13 @@ class Advice:
             return
         if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
+        yield from (Reason(Kind.READING, x) for x in self.gap())
         readings = [self._times, self._meanings, self._frames, self._aliased]
         first = next(iter(self.outcome.shown.values()), None)
         if first and first.one.row:  # a misreading acts in all rows
             readings = []
         for texts in (*readings, self._parts):
             yield from (Reason(Kind.READING, x) for x in texts())
-        yield from (Reason(Kind.READING, x) for x in self.gap())
         if Kind.MACHINE not in self.kinds:
             yield from self._last()
 
@@ -269,31 +273,58 @@ class Advice:
         rms = [(part.residuals[x].rms, whole.residuals[x].rms) for x in seen]
         return key in part.numbers and all(x <= _CLOSER * y for x, y in rms)
 
+    @cached_property
+    def _halves(self) -> list[Outcome]:
+        """Nutating fits of the first half and of the second."""
+        middle, fits = self.recording.t.size // 2, list[Outcome | None]()
+        if middle >= LEAST_ROWS:
+            halves = (self.recording.part(x) for x in (slice(middle), slice(middle, None)))
+            fits = [self._fit(x) for x in halves]
+        return [x for x in fits if x is not None and x.inputs is not None]
+
+    def _off(self, half: Outcome, frames: int = 0) -> Array:
+        """Return all rows minus the motion of a half, some frames late, over its residuals."""
+        recording = self.recording
+        t = recording.t + recording.t_start - half.recording.t_start + frames * recording.frame
+        sizes = np.array([[x.rms] for x in half.residuals.values()])
+        return np.asarray(recording.residuals(*half.motion(t)) / sizes)
+
+    def lost_rows(self) -> tuple[int, int]:
+        """Return the row before which rows are lost, and how many, by the motion of a half."""
+        best = 0.0, 0, 0
+        for half in self._halves:
+            is_first = half.recording.t_start == self.recording.t_start
+            way = 1 if is_first else -1  # later rows are late, or earlier ones are early
+            each = [
+                np.fmin(np.abs(self._off(half, way * x)), _LEAVES) for x in range(_MOST_LOST + 1)
+            ]
+            chi2 = np.stack([np.nansum(x**2, axis=0) for x in each])
+            gains = chi2[0] - chi2
+            before = np.cumsum(gains, axis=1) - gains
+            sums = gains.sum(axis=1, keepdims=True) - before if is_first else before
+            count, row = np.unravel_index(np.argmax(sums), sums.shape)
+            best = max(best, (float(sums.max()), int(row), int(count)))
+        return best[1:] if best[0] > _LEAVES**2 else (0, 0)
+
     def gap(self) -> Iterator[str]:
         """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
         recording, late = self.recording, self.outcome.late
-        found = (late.one.row, round(late.size)) if late else likely_gap(recording)
-        row, count = found or (0, 0)
-        if count < 1:
+        if not recording.is_even:
             return
-        other = self._fit(with_gap(recording, row, count))
+        row, count = (late.one.row, round(late.size)) if late else self.lost_rows()
+        other = self._fit(with_gap(recording, row, count)) if row and count else None
         if other is None or other.verdict != GOOD:
             return
         gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
         if gain > max([_SURE_GAP, *[x.score for x in self.outcome.shown.values()]]):
-            at = recording.t_start + float(recording.t[row])
-            rows = "1 row is" if count == 1 else f"{count} rows are"
-            yield f"{rows} lost before t = {at:.6g}: write the times of the frames"
+            yield f"{lost_text(recording, row, count)}: write the times of the frames"
 
     def _last(self) -> Iterator[Reason]:
         """Yield where the recording leaves the motion of its first half, and what to check."""
         recording, begins = self.recording, ""
-        half = recording.part(slice(0, recording.t.size // 2))
-        found = self._fit(half) if half.t.size >= 2 * LEAST_ROWS else None
-        if found is not None and found.verdict == GOOD:
-            rests = recording.residuals(*found.motion(recording.t))
-            sizes = np.array([[x.rms] for x in found.residuals.values()])
-            away = np.nanmax(np.abs(rests) / sizes, axis=0) > _LEAVES
+        first = next(iter(self._halves), None)
+        if first and first.verdict == GOOD and first.recording.t_start == recording.t_start:
+            away = np.nanmax(np.abs(self._off(first)), axis=0) > _LEAVES
             kept = np.convolve(away, np.ones(3), "valid") == 3
             row = int(np.argmax(kept))
             rest = recording.part(slice(row, None))

@@ -171,6 +171,13 @@ def wander(x: Variations) -> Neighbour:
     return Neighbour(_WANDER, "by {} %", drifts)
 
 
+def lost_text(recording: Measured, row: int, size: float) -> str:
+    """Return how many rows are lost before a row, or doubled if the number is below 0."""
+    count, how = max(round(abs(size)), 1), "doubled at" if size < 0 else "lost before"
+    at = recording.t_start + float(recording.t[row])
+    return f"{count} row{'s are' if count > 1 else ' is'} {how} t = {at:.6g}"
+
+
 class Finding:
     """What a recording shows of a neighbour of the fitted top, along a motion.
 
@@ -258,14 +265,12 @@ class Finding:
     def text(self) -> str:
         """Its name with its size, and the time or the spin at which it was found."""
         one, recording, where = self.one, self.fit.recording, ""
+        if one.name == LOST:
+            return lost_text(recording, one.row, self.size)
         if one.row:
             where = f" t = {recording.t_start + float(recording.t[one.row]):.6g}"
         elif math.isfinite(self.motion.ratio) and self.fit.spins == 5:
             where = f", if r0 = {self.motion.b * self.motion.ratio / self.fit.period:.3g}"
-        if one.name == LOST:
-            count = max(round(abs(self.size)), 1)
-            how = "doubled at" if self.size < 0 else "lost before"
-            return f"{count} row{'s are' if count > 1 else ' is'} {how}{where}"
         root = math.sqrt(abs(self.size)) + 1e-300
         pair = (root, self.std / 2 / root) if one.is_square else (self.size, self.std)
         unit = 180 / math.pi if "degrees" in one.amount else 100.0

@@ -1,4 +1,4 @@
-"""Rows that a recorder repeated or lost, rounded times, and rows before a release."""
+"""Rows that a recorder repeated, gaps in time, rounded times, and rows before a release."""
 
 from __future__ import annotations
 
@@ -7,23 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arithmetic.types import Array, Mask
+from ..arithmetic.types import Mask
 from ..recordings.clocks import even_times
 from .measured import LEAST_ROWS, Measured
 from .signals import noise_of, oscillation_in, signals_in
 
 _COARSE = 0.05
 """Share of rows in which one angle alone repeats, from which its steps are coarse."""
-_MOST_LOST = 3
-"""Rows that are lost at once at most."""
-_PLACES = 24
-"""Places at which a loss is tried first."""
-_ROWS = 400
-"""Rows of a recording up to which a loss is searched for."""
-_NEAR = 21
-"""Frequencies that are tried with a loss."""
-_ORDER = 2
-"""Harmonics that are tried with a loss; twice as many decide between near rows."""
 _HELD = 12
 """Least number of rows before a release."""
 _RELEASED = 6.0
@@ -72,36 +62,6 @@ def with_gap(recording: Measured, row: int, count: int) -> Measured:
     """Return the recording with the times that rows have if some were lost before one of them."""
     later = np.arange(recording.t.size) >= row
     return replace(recording, t=recording.t + count * recording.frame * later)
-
-
-def likely_gap(recording: Measured) -> tuple[int, int] | None:
-    """Return the row and the number of rows whose loss before it explains the signals best.
-
-    Harmonics of one frequency then leave the least noise.
-    """
-    size = recording.t.size
-    if not recording.is_even or size > _ROWS:
-        return None
-    signals = signals_in(recording)
-    frequency, _ = oscillation_in(signals)
-    edge, frame = max(size // 12, 4), recording.frame
-    step = max((size - 2 * edge) // _PLACES, 1)
-
-    def noise(row: int, count: int, order: int = _ORDER) -> float:
-        near = frequency * (1 + np.linspace(-2, 2, order * _NEAR) * _MOST_LOST / size)
-        found: Array = np.zeros(near.size)
-        for x in signals.values():
-            gap = count * frame * (x.t >= recording.t[row])
-            other = x._replace(t=x.t + gap, y=x.y - x.rate * gap)
-            found = found + np.log(other.harmonics(near, order)[1])
-        return float(found.min())
-
-    rows = range(edge, size - edge, step)
-    tried = {(x, n): noise(x, n) for x in rows for n in range(1, _MOST_LOST + 1)}
-    row, _ = min(tried, key=lambda x: tried[x])
-    near = range(max(row - step + 1, edge), min(row + step, size - edge))
-    exact = {(x, n): noise(x, n, 2 * _ORDER) for x in near for n in range(1, _MOST_LOST + 1)}
-    return min(exact, key=lambda x: exact[x])
 
 
 def evenly_timed(recording: Measured) -> Measured | None:

@@ -12,10 +12,11 @@ from noisy_recordings import DEGREE, TOP, axis_of, fitted, recording_from
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.inverse.advice import Advice
 from lagrange_cli.inverse.neighbours import machines
 from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.reasons import Kind
-from lagrange_cli.inverse.rows import frequency_of_parts, likely_gap, repeated, with_gap
+from lagrange_cli.inverse.rows import frequency_of_parts, repeated, with_gap
 from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.inverse.variations import Variations
 from lagrange_cli.names import ANGLES
@@ -155,17 +156,18 @@ def test_rows_that_repeat_another_are_named_but_not_those_of_a_coarse_encoder() 
     assert repeated(recording_from(t, **coarse)) == ""
 
 
-def test_lost_rows_are_found() -> None:
+@pytest.mark.parametrize("lost", [1, 3])
+def test_lost_rows_are_found(lost: int) -> None:
     """If the rows of a recording are numbered although some are lost."""
     t, angles = seen()
-    for lost in (1, 3):
-        kept = np.r_[0:60, 60 + lost : 120]
-        short = {x: y[kept] for x, y in angles.items()}
-        one = recording_from(t[: kept.size], **short)
-        row, count = likely_gap(one) or (0, 0)
-        assert (abs(row - 60) < 3, count) == (True, lost)
-        assert with_gap(one, 60, lost).t == pytest.approx(t[kept])
-    assert fitted(t[: kept.size], short).failure().startswith("3 rows are lost before t = ")
+    kept = np.r_[0:60, 60 + lost : 120]
+    one = recording_from(t[: kept.size], **{x: y[kept] for x, y in angles.items()})
+    assert with_gap(one, 60, lost).t == pytest.approx(t[kept])
+    outcome = best_fit(one, {})
+    assert Advice(one, {}, outcome).lost_rows() == (60, lost)
+    said = f"{lost} row{'s are' if lost > 1 else ' is'} lost before t = {t[60]:.6g}"
+    found = [outcome.failure(), *Advice(one, {}, outcome).gap()]
+    assert any(x.startswith(said) for x in found), found
 
 
 def test_a_late_filter_is_in_the_uncertainty_of_the_first_row() -> None:
