@@ -226,9 +226,10 @@ def other(seed: int, name: str = "") -> Drawn:
         t = np.asarray(np.arange(count) * frame)
         if not (half_range > 3 * noise and 30 <= count <= 400 and abs(top.r0) * frame < 1.5):
             continue
-        if machine.motion is None:
-            exact = top.motion(t)
-        else:
+        exact = top.motion(t)
+        if np.sin(exact["theta"]).min() < 0.05:  # a gimbal locks at a pole
+            continue
+        if machine.motion is not None:
             start = np.array([top.theta0, top.thetadot0, top.psidot0])
             exact = machine.motion(top.a, top.b, top.r0, start, t, **{machine.size: size})
         if 0.15 < exact["theta"].min() and exact["theta"].max() < math.pi - 0.15:
