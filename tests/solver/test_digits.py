@@ -59,8 +59,8 @@ DERIVED: dict[str, dict[str, Any]] = {
         )
     },
 }
-DEEP = {"near hanging"}
-"""A kind whose roots need 6,000 digits, which take the reference 20 s: `tools/fuzz.py` has it."""
+DEEP = {"near hanging", "any spin"}
+"""Kinds that take the reference seconds, for thousands of digits: `tools/fuzz.py` has them."""
 RANDOM = {kind: make(Random(f"record {kind}")) for kind, make in KINDS.items() if kind not in DEEP}
 SCENES = EVERY_KIND | RANDOM | DERIVED
 HAIR, TINY, HUGE = mpmath.mpf("1e-9"), mpmath.mpf("1e-90"), mpmath.mpf("1e500")
