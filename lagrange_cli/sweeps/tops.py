@@ -27,7 +27,8 @@ _SMALL, _LARGE = 1e-30, 1e30
 """Sizes between which no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _NEAR_1 = 2.0**-44
-"""Distance of lambda = b^2/2a from 1 below which a pair of doubles may lose lambda - 1."""
+"""Distance of lambda = b^2/2a from 1, or of the energies of a pendulum and the separatrix relative
+to their size, below which a pair of doubles may lose the difference."""
 _KNOWN = 2.0**-80
 """Largest relative error of an input that follows from another form."""
 UNKNOWN = Bounded(np.nan, np.inf)
@@ -152,9 +153,9 @@ class TopArrays(NamedTuple):
     def groups(self) -> dict[tuple[Regime | None, bool], Mask]:
         """Return the tops of ordinary size that the formulas of sweeps compute.
 
-        The keys are a regime and whether tilts are in degrees.  Tops released from rest, and steady
-        ones given by a word, are keyed by their regime; None has those with other initial rates,
-        with a torque and off the vertical.
+        The keys are a regime and whether tilts are in degrees.  Tops released from rest, plane
+        pendulums, and steady ones given by a word are keyed by their regime; None has those with
+        other initial rates, with a torque and off the vertical.
         """
         x, ordinary, steady = self.numbers, self._are_ordinary(), self.steady > 0
         upright, in_degrees = self.tilt.number == 0, self.tilt.in_degrees
