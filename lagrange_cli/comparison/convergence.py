@@ -60,8 +60,9 @@ def convergence(runs: Sequence[tuple[float, Array, Array]], limit: float) -> Con
         said += f" {step[i + 1]:g} to {step[i]:g}: the order of the step sizes is wrong, the method"
         said += " varies, or the trajectory is of a different top."
         return Convergence(errors, said, converges=False)
-    plateau, tends = _plateau(step, end if end.max() < _PHASES else error)
-    if plateau > max(limit, _PLATEAU * error[0]) and end[-1] > _RISES * plateau:
+    shown = end if end.max() < _PHASES else error
+    plateau, tends = _plateau(step, shown)
+    if plateau > max(limit, _PLATEAU * shown[0]) and end[-1] > _RISES * plateau:
         said = f"The error falls to {plateau:.1e} as the step falls to 0 (order {tends:.2f})"
         said += ": this is the motion of another top, or the engine has another equation."
         return Convergence(errors, said, tends, converges=False)
@@ -115,7 +116,8 @@ def named_at_step_0(
     for name, right in {"a": 1.0, "b": 1.0, "r0": 1.0, "decay": 0.0}.items():
         if last[name] is not None and before[name] is not None:
             at_0[name] = last[name] + (moved := share * (last[name] - before[name]))
-            least = _OTHER / (last["span"] if name == "decay" else 1.0)
+            least = max(_OTHER, 3 * known[fine].axis.residual)
+            least /= last["span"] if name == "decay" else 1.0
             is_other |= abs(at_0[name] - right) > max(least, 2 * abs(moved))
     if not is_other:
         return found

@@ -222,6 +222,7 @@ def test_order_of_convergence(method: Any, steps: list[float], order: int) -> No
         ([1e-3, 2e-11, 3e-11], 26, "falls with the step; the order"),  # only rounding grows
         ([0.4, 0.1, 0.025], 2, "falls with the step; the order of convergence is 2.00"),
         ([0.5, 0.275, 0.21875], 2, "falls to 2.0e-01 as the step falls to 0 (order 2.0"),
+        ([0.686, 0.293, 0.137], 1, "falls with the step; the order of convergence is 1.1"),
         ([1e-2, 1e-2, 1e-2], None, "not fall with the step: the numbers may have been rounded"),
         ([0.2, 0.2, 0.2], None, "not fall with the step: this is the motion of another top"),
         ([2.9e-2, 2.2e-3, 3.5e-3], None, "2.2e-03 to 3.5e-03 as the step falls from 0.002 to"),
