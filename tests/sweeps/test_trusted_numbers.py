@@ -196,7 +196,7 @@ def test_most_hard_starts_are_computed_as_arrays(start: str, monkeypatch: Any) -
 def test_neighbours_in_a_block_change_no_bit() -> None:
     """Some tops need more steps of the iterations than others."""
     rng = random.Random("neighbours")
-    scenes = [in_doubles(KINDS[kind](rng)) for kind in KINDS for _ in range(3)]
+    scenes = [in_doubles(make(rng)) for make in KINDS.values()]
     scenes += [in_doubles(KINDS[kind](rng)) | {"thetadot0": 0, "psidot0": 0} for kind in KINDS]
     scenes = [{"thetadot0": 0, "psidot0": 0} | x for x in scenes if "theta0_deg" in x]
     keys = [*TEXT_KEYS, *KEYS, "error"]
