@@ -29,7 +29,6 @@ from .known import (
     time_power,
 )
 from .problem import Ties
-from .spins import whole_turns
 
 _EXACT = 1e-5
 """Standard deviation of an exact input, in units of the period, if the recording alone does not
@@ -137,6 +136,10 @@ class Vector:
 
         return found
 
+    def here(self, function: Function) -> dict[str, Any]:
+        """Return numbers of the vector itself."""
+        return {x: y[0] for x, y in function(self.z[np.newaxis]).items()}
+
     def slopes(self, function: Function, z: Array) -> Array:
         """Return the derivatives of functions, by a share of the standard deviations."""
         steps = np.maximum(1e-2 * np.linalg.norm(self.spread, axis=1), 1e-9 * (np.abs(z) + 1e-3))
@@ -196,13 +199,12 @@ def compare(best: Any, known: Known, scale: float, turn: float) -> Comparison:
     found, given = Comparison(vector), vector.numbers(vector.estimates)
     found.free = {x: std for x, (_, std, _) in vector.numbers(vector.motion).items()}
     if turn and best.spins:
-        r0 = float(vector.motion(vector.z[np.newaxis])["r0"][0])
-        wanted, is_sure = _spin(vector, turn)
+        shift, is_sure = _shift(vector, turn)
         if not is_sure:
             given = {x: y for x, y in given.items() if replaced_by(x) != "C"}
             unused = "known C is not used: it does not show how many turns per row the spin makes"
             found.notes.append(unused)
-        if shift := whole_turns(r0, r0 if wanted is None else wanted, turn):
+        if shift:
             vector, slowest = Vector(best.turned(shift), vector.known), given
             found.vector, given, found.is_selected = vector, vector.numbers(vector.estimates), True
     for name, (value, std, _) in given.items():
@@ -225,10 +227,11 @@ def compare(best: Any, known: Known, scale: float, turn: float) -> Comparison:
     return found
 
 
-def _spin(vector: Vector, turn: float) -> tuple[float | None, bool]:
-    """Return the r0 that known inputs imply, if any, and false if a known C cannot select it.
+def _shift(vector: Vector, turn: float) -> tuple[float, bool]:
+    """Return the whole turns per row to the r0 that known inputs imply, 0 if they imply none.
 
-    Without a known spin, a C selects one of the spins that look alike if b is known well enough.
+    Without a known spin, a C selects one of the spins that look alike if b is known well enough:
+    if not, the second value is false.
     """
 
     def implied(at: Array) -> dict[str, Array]:
@@ -236,10 +239,10 @@ def _spin(vector: Vector, turn: float) -> tuple[float | None, bool]:
         found = body if "r0" in body else body_numbers(v["a"] / 2, v["b"], body)
         return {x: found[x] for x in ("r0",) if x in found}
 
-    if not (pair := vector.numbers(implied)) or "r0" in vector.body(vector.z[np.newaxis]):
-        return pair["r0"][0] if pair else None, True
-    value, std, _ = pair["r0"]
-    if abs(value) > _MOST_TURNS * turn:
-        return None, True
-    is_sure = abs(value) <= turn / 2 or std * _SELECTS <= turn
-    return value if is_sure else None, is_sure
+    value, std, _ = vector.numbers(implied).get("r0", (0.0, 0.0, 0.0))
+    if "r0" not in vector.here(vector.body):
+        if not value or abs(value) > _MOST_TURNS * turn:
+            return 0.0, True
+        if abs(value) > turn / 2 and std * _SELECTS > turn:
+            return 0.0, False
+    return turn * round((value - vector.here(vector.motion)["r0"]) / turn), True

@@ -153,8 +153,8 @@ def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:
             "deviations"
         )
         faults.append(Reason(Kind.OPEN, hardly))
-    spins, here = best.spins, found.vector.z[np.newaxis]
-    r0 = values["r0"] if spins else float(found.vector.body(here).get("r0", np.zeros(1))[0])
+    spins = best.spins
+    r0 = values["r0"] if spins else found.vector.here(found.vector.body).get("r0", 0.0)
     if r0 and not best.unknown:
         ratio, std = values["b"] / r0, best.std("b") / abs(r0)
         is_free = spins and is_even
@@ -208,9 +208,8 @@ def _inputs(found: Comparison, *, is_spin_known: bool) -> tuple[dict[str, float]
     Undetermined ones are A = g = 1, C = A, and m s^2 = A/10 or less, as a body allows.  If known
     inputs contradict the motion, its a and b determine A and C.
     """
-    vector, here = found.vector, found.vector.z[np.newaxis]
-    v, has = ({x: y[0] for x, y in f(here).items()} for f in (vector.motion, vector.body))
-    if vector.best.spins:
+    v, has = found.vector.here(found.vector.motion), found.vector.here(found.vector.body)
+    if found.vector.best.spins:
         has["r0"] = v["r0"]
     wrong = {"r0"} if not is_spin_known else set()
     if found.contradictions:

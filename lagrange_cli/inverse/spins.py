@@ -12,11 +12,6 @@ _TRIED = np.arange(-3, 4)
 """Whole turns per row that are tried."""
 
 
-def whole_turns(rate: float, wanted: float, turn: float) -> float:
-    """Return the whole turns per row that bring a rate next to a wanted one."""
-    return turn * round((wanted - rate) / turn) if turn else 0.0
-
-
 def slowest_rate(rate: float, turn: float, b: float, std: float = 0.0) -> float:
     """Return the slowest of the rates that look alike with which 0 < b/rate <= 2, or infinity.
 

@@ -209,16 +209,15 @@ def steady_outcome(
         **others,
     )
     reasons = [Reason(Kind.KNOWN, x) for x in found.contradictions]
-    r0 = float(found.vector.motion(found.vector.z[np.newaxis])["r0"][0])
-    r0 = 0.0 if reasons or not is_derived else r0  # a wrong one has any sign
+    has_sign = is_derived and not reasons  # a wrong r0 has any
+    r0 = float(found.vector.here(found.vector.motion)["r0"]) if has_sign else 0.0
     reasons += _faults(recording, turned, r0, result, frequency)
     return replace(result, reasons=reasons)
 
 
 def _factor(vector: Vector, notes: list[str], *, is_sure: bool) -> _Pair | None:
     """Return 1/(1 - x) and its standard deviation, None if b/a is not determined."""
-    here = vector.z[np.newaxis]
-    v, body = ({x: float(y[0]) for x, y in f(here).items()} for f in (vector.motion, vector.body))
+    v, body = vector.here(vector.motion), vector.here(vector.body)
     r0, along = v["r0"], v["psidot0"] * math.cos(v[TILT])
     if not v["psidot0"] or not r0:
         return None
