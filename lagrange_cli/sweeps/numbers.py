@@ -99,8 +99,8 @@ def nome_of(k: Bounded, k_prime: Bounded) -> Bounded:
     part = x * x / (2 * (1 + y) * (1 + np.sqrt(y)) ** 2)  # (1 - sqrt(k'))/(1 + sqrt(k'))/2
     fourth = part**4
     value = part * (1 + fourth * (2 + fourth * (15 + fourth * 150)))
-    if (is_large := x >= y).any():
-        value = np.where(is_large, np.exp(-np.pi * agm_of(y) / agm_of(x)), value)
+    if (large := x >= y).any():
+        value[large] = np.exp(-np.pi * agm_of(y[large]) / agm_of(x[large]))
     return _by_relative_errors(value, k, k_prime, least=16 + 4 * len(_LIMITS) * np.pi)
 
 
