@@ -163,8 +163,9 @@ def _start(t: Array, axis: Array) -> tuple[Array, float]:
 def sentences(top: Top, found: Estimate) -> Iterator[str]:
     """Yield what an estimate says of the top, the simplest first."""
     axis, turns = found.axis, abs(float(top.r0)) * found.step
+    smaller = f"use smaller steps (r0 dt is {turns:.2g} rad)"
     if not found.is_trusted:
-        smaller = f"use smaller steps (r0 dt is {turns:.2g} rad), or " * (turns > _FINE / 2)
+        smaller = f"{smaller}, or " * (turns > _FINE / 2)
         said = f"the axis does not move like that of a top (residual {axis.residual:.1%})"
         yield f"{said}: {smaller}check the equations; for measured data, use fit"
         return
@@ -174,14 +175,15 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     lean = math.acos(min(1.0, axis.up[2])) if found.a and axis.a_spread < same * axis.a else 0.0
     is_upright = not lean > max(0.02, same)
     moved = [*_other_start(top, found, same)] if is_upright else []
-    if known and (off or found.decay or moved or not is_upright):
+    is_other = bool(off or found.decay or moved or not is_upright)
+    if known and is_other:
         parts = [f"{x} = {y:.4g} {x}_0" if x in off else f"{x} = {x}_0" for x, y in known.items()]
         yield f"the motion is that of a top with {', '.join(parts)}"
     elif known:
         most = max(axis.residual, *(abs(y - 1) for y in known.values()))
         near = " and ".join(_other_start(top, found, same, kicked=False))
         but = f", but {near}: check the start, or" if near else ":"
-        yield f"the motion is that of the given top, to {most:.2%}{but} use smaller steps"
+        yield f"the motion is that of the given top, to {most:.2%}{but} {smaller}"
     yield from moved
     given = dict(zip("ab", a_and_b(top), strict=True))
     if hidden := [x for x, y in given.items() if y and x not in known]:
@@ -193,8 +195,8 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     if not is_upright:
         x, y, z = axis.up
         yield f"up is ({x:.4f}, {y:.4f}, {z:.4f}) in the space frame"
-    if turns > _COARSE:
-        yield f"if each row is a step (r0 dt is {turns:.2g} rad), use smaller steps"
+    if turns > _COARSE and (is_other or not known):
+        yield f"if each row is a step, {smaller}"
 
 
 def _other_start(top: Top, found: Estimate, same: float, *, kicked: bool = True) -> Iterator[str]:
