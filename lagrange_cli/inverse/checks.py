@@ -25,18 +25,12 @@ LARGEST = 0.2
 """Largest rms residual of a channel in radians."""
 _OF_RANGE = 1 / 3
 """Largest rms residual over the range of the data."""
-_OF_NOISY_RANGE = 1 / 2
-"""The same if they are as large as the noise of neighbours."""
-_AS_NOISY = 1.5
-"""Rms residual over the noise of neighbours that is noise."""
 _ABOVE = 3.0
 """Largest rms residual over the noise of neighbours."""
 _SMOOTHED = 2.0
 """How many times larger it may be if a filter explains how residuals correlate."""
 ROUNDING = 1e-10
 """Rms of rounding errors in radians."""
-_LATER = 0.15
-"""Tolerance of the correlation with the second next row, of smoothed noise."""
 _OUTLIER = 15.0
 """Least residual of an outlier, over the standard deviation of the
 others, which the median estimates."""
@@ -44,10 +38,6 @@ _ROWS_PER_LAG = 2.0
 """Least number of rows per period over the reach of a correlation."""
 _LAGS = 12
 """Longest reach of noise that correlates, in rows."""
-_WEAK = 0.1
-"""A correlation that is none."""
-_COARSE = 0.6
-"""Largest rms of the residuals of an encoder, over its step."""
 _WITHIN = 0.75
 """Largest 95 % quantile of the residuals of an encoder, over its step."""
 
@@ -79,9 +69,7 @@ class Residuals:
     @property
     def is_large(self) -> bool:
         """Whether the residuals are so large that the motion describes nothing."""
-        is_noise = self.rms <= _AS_NOISY * self.neighbours < math.inf
-        share = _OF_NOISY_RANGE if is_noise else _OF_RANGE
-        return self.rms > min(LARGEST, max(self.range * share, 2 * self.step, ROUNDING))
+        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, 2 * self.step, ROUNDING))
 
     @cached_property
     def rms(self) -> float:
@@ -91,8 +79,7 @@ class Residuals:
     @property
     def is_coarse(self) -> bool:
         """Whether the steps of an encoder explain the residuals."""
-        within = float(np.quantile(np.abs(self.y), 0.95)) <= _WITHIN * self.step
-        return within and self.rms <= _COARSE * self.step
+        return float(np.quantile(np.abs(self.y), 0.95)) <= _WITHIN * self.step
 
     @property
     def outliers(self) -> Mask:
@@ -124,7 +111,7 @@ class Residuals:
         rest = np.abs(self.correlations[1 : max(self.y.size // 4, 2)])
         nearer = np.cumsum(rest[:_LAGS] ** 2) - rest[:_LAGS] ** 2  # as in Bartlett's formula
         nearer = np.pad(nearer, (0, rest.size - nearer.size), mode="edge")
-        large = rest >= np.maximum(2.5 * np.sqrt((1 + 2 * nearer) / self.y.size), _WEAK)
+        large = rest >= 2.5 * np.sqrt((1 + 2 * nearer) / self.y.size)
         found = (n for n in range(1, rest.size + 1) if not large[n - 1 : 2 * n - 1].any())
         return next(found, self.y.size)
 
@@ -136,8 +123,7 @@ class Residuals:
         after a mean of rows.  White noise and a slow oscillation together have almost r.
         """
         r, later = self.correlations[1:3]
-        noise = 2.5 / math.sqrt(self.y.size)
-        return bool(later < max(r * r, 2 * r - 1) + max(_LATER, noise))
+        return bool(later < max(r * r, 2 * r - 1) + 2.5 / math.sqrt(self.y.size))
 
     def widening(self, chance: float = CHANCE) -> float:
         """Return the factor of standard deviations for correlated noise, at least 1.
