@@ -233,9 +233,8 @@ class Advice:
         counts = [x for x in _WINDOWS if least <= x <= recording.t.size / _ROWS_PER_WINDOW]
         if not counts or len(recording.angles) == 1:  # whose known start is of the first window
             return
-        for count in counts[
-            bisect_left(counts, True, key=lambda x: self._are_good(x, *_ends(x))) :
-        ]:
+        start = bisect_left(counts, True, key=lambda x: self._are_good(x, *_ends(x)))
+        for count in counts[start:]:
             seen = decay_of([x for i in _ends(count) if (x := self._window(count, i))])
             if seen and seen.time is not None and self._are_good(count, *range(count)):
                 yield Reason(Kind.WINDOWS, f"the spin decays: use {arg('window', count)}")
@@ -284,7 +283,7 @@ class Advice:
 
     def _off(self, half: Outcome, frames: int = 0) -> Array:
         """Return all rows minus the motion of a half, some frames late, over its residuals."""
-        recording = self.recording
+        recording = self.recording.mirrored if half.recording.is_mirrored else self.recording
         t = recording.t + recording.t_start - half.recording.t_start + frames * recording.frame
         sizes = np.array([[x.rms] for x in half.residuals.values()])
         return np.asarray(recording.residuals(*half.motion(t)) / sizes)
@@ -312,7 +311,7 @@ class Advice:
         if not recording.is_even:
             return
         row, count = (late.one.row, round(late.size)) if late else self.lost_rows()
-        other = self._fit(with_gap(recording, row, count)) if row and count else None
+        other = self._fit(with_gap(recording, row, count)) if row and count > 0 else None
         if other is None or other.verdict != GOOD:
             return
         gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)

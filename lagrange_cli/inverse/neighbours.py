@@ -215,8 +215,13 @@ class Finding:
     @property
     def is_shown(self) -> bool:
         """Whether it is there and moves a number of the fit by a standard deviation or more."""
+        return self.is_there and self.effect >= 1
+
+    @property
+    def is_there(self) -> bool:
+        """Whether the recording shows it."""
         least = math.sqrt(_SURE**2 + 2 * math.log(self.one.tried * CHANCE / self.fit.chance))
-        return self.is_possible and self.sigmas >= least and self.effect >= 1
+        return self.is_possible and self.sigmas >= least
 
     @property
     def is_possible(self) -> bool:
@@ -403,8 +408,9 @@ class Neighbours:
         if not (self.is_failing or any(x.is_shown for x in likely)):
             return []
         likely += self._turning() if self.is_failing else []
-        followed = (self._followed(x) for x in self._ranked(likely)[:_LIKELIEST])
-        return self._ranked([x for x in followed if x.is_shown])
+        followed = [self._followed(x) for x in self._ranked(likely)[:_LIKELIEST]]
+        found = [x for x in followed if x.is_there] if any(x.is_shown for x in followed) else []
+        return self._ranked(found)
 
     def _ranked(self, found: list[Finding]) -> list[Finding]:
         """Return findings by their scores: log likelihoods, less the costs of their parameters."""

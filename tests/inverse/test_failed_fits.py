@@ -113,14 +113,6 @@ def test_noise_of_psi_and_phi_may_grow_beside_a_pole() -> None:
     assert all(abs(x) < fuzz_fits.FAR for x in pulls.values()), pulls
 
 
-def test_an_oscillation_is_no_noise_that_ends_where_it_does_not_correlate() -> None:
-    t, white = np.arange(400.0), np.random.default_rng(1).normal(size=400)
-    smooth = np.convolve(white, np.ones(5) / 5, mode="same")
-    assert Residuals(t, white).reach <= 2
-    assert 4 <= Residuals(t, smooth).reach <= 6
-    assert Residuals(t, np.sin(0.9 * t) + white / 10).reach > t.size / 5
-
-
 @pytest.mark.slow
 def test_a_decay_within_each_window_is_named() -> None:
     rng, t = np.random.default_rng(12), np.linspace(0, 6, 721)

@@ -25,30 +25,22 @@ from lagrange_cli.inverse.search import best_fit
         ("t,theta,psi", "{t},40,10", "the precession rate is not determined"),
         ("t,p,q,r", "{t},1,2,3", "must have columns for angles, an axis or an attitude"),
         ("t,x,y", "{t},1,2", r"psi alone \(from t, x, y\) does not determine a top: give --theta0"),
-        ("t,theta,psi", "0,{t},40,5,1,2", "a comma cannot both separate cells and be the decimal"),
         ("t,phi", "{t},3", "must have theta or psi too: phi alone does not determine a top"),
         (
             "t,theta",
             "{t},40",
             r"theta alone \(from t, theta\) does not determine a top: give --psidot0, 0 if",
         ),
-        ("t,psi", "{t},40", r"psi alone \(from t, psi\) does not determine a top: give --theta0"),
         ("t,theta,psi", "0,40,{t}", "t must span"),
         ("t,theta,psi", "{t},240,{t}", "theta must be between 0 and 180 deg"),
-        ("t,theta", "", "must have at least one row"),
         ("t,theta,psi", "-{t},,", r"theta is empty \(theta\): remove its columns, or skip"),
-        (
-            "t,theta,psi",
-            "{back},40,10",
-            "t must not turn back, got 0 after 4: put each",
-        ),
     ],
 )
 def test_bad_data_get_a_line(
     lagtop: Lagtop, tmp_path: Path, header: str, row: str, message: str
 ) -> None:
     path = tmp_path / "data.csv"
-    rows = [row.format(t=i, back=i % 5) for i in range(20)]
+    rows = [row.format(t=i) for i in range(20)]
     path.write_text("\n".join([header, *rows, ""]))
     result = lagtop("fit", path)
     assert result.exit_code in {1, 65}
@@ -74,7 +66,6 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
         (f"{SAMPLE} --A-cm 1", 2, "--A-cm must be given with m and s, as A = A_cm + m s^2"),
-        (f"{SAMPLE} --align up=w", 2, "--align must be one of axis=y, up=y, left"),
     ],
 )
 def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:

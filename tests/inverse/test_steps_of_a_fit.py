@@ -148,6 +148,8 @@ def test_a_filter_explains_smooth_noise_but_no_slow_oscillation() -> None:
     noise = rng.normal(size=600)
     for way in ("mean", "lag", "cubic"):
         assert Residuals(t, filtered(noise, 5, way)).is_smoothed, way
+    assert Residuals(t, noise).reach <= 2
+    assert Residuals(t, np.sin(0.9 * t) + noise / 10).reach > t.size / 5  # it passes through 0
     slow = Residuals(t, noise + np.sin(t / 9))
     assert not slow.is_smoothed
     assert any(slow.faults("x", 1 / 40, CHANCE))
