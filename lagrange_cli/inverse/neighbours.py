@@ -42,6 +42,8 @@ _LIKELIEST = 5
 """Neighbours among which the name is chosen, and those that a line lists."""
 _LARGEST = 0.5
 """Size from which a change is not a small one, so that its template is wrong."""
+_LARGEST_WANDER = 0.1
+"""The same of a clock, whose wander resembles strong friction, and much else."""
 _POINTS = 96
 """Points of the grid in a period of the nutation."""
 _PER_TURN = 10
@@ -227,6 +229,7 @@ class Finding:
     def is_possible(self) -> bool:
         """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
         most = 1 / (2 * math.pi**2) if self.one.is_square else _LARGEST  # no nutation is left
+        most = _LARGEST_WANDER if self.one.name == _WANDER else most
         size = abs(self.size)
         is_possible = size < most and (self.size > 0 or not self.one.is_positive)
         if self.one.name == LOST:
