@@ -25,6 +25,10 @@ LARGEST = 0.2
 """Largest rms residual of a channel in radians."""
 _OF_RANGE = 1 / 3
 """Largest rms residual over the range of the data."""
+_OF_NOISY_RANGE = 1 / 2
+"""The same if they are as large as the noise of neighbours."""
+_AS_NOISY = 1.5
+"""Rms residual over the noise of neighbours that is noise."""
 _ABOVE = 3.0
 """Largest rms residual over the noise of neighbours."""
 _SMOOTHED = 2.0
@@ -69,7 +73,9 @@ class Residuals:
     @property
     def is_large(self) -> bool:
         """Whether the residuals are so large that the motion describes nothing."""
-        return self.rms > min(LARGEST, max(self.range * _OF_RANGE, 2 * self.step, ROUNDING))
+        is_noise = self.rms <= _AS_NOISY * self.neighbours < math.inf
+        share = _OF_NOISY_RANGE if is_noise else _OF_RANGE
+        return self.rms > min(LARGEST, max(self.range * share, 2 * self.step, ROUNDING))
 
     @cached_property
     def rms(self) -> float:

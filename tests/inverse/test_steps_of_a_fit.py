@@ -155,3 +155,5 @@ def test_a_filter_explains_smooth_noise_but_no_slow_oscillation() -> None:
     assert any(slow.faults("x", 1 / 40, CHANCE))
     assert Residuals(t, noise / 20, range=0.1).is_large
     assert not Residuals(t, noise / 20, range=0.4).is_large
+    noisy = Residuals(t, noise / 20, neighbours=0.05, range=0.13)
+    assert not noisy.is_large  # a nutation of twice the noise is seen in many rows
