@@ -332,6 +332,7 @@ def test_a_child_process_has_the_precision_of_the_host() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="the system has no such timer")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # by Hypothesis' gc
 def test_an_exception_of_a_signal_handler_leaves_the_precision_as_it_was() -> None:
     """3,000 at random moments: the lock is free, and the precision is that of the host."""
 
