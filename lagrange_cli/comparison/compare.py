@@ -95,7 +95,7 @@ class Comparison(HasRecord):
     cause: str | None = _key("the cause of the error")
     explained: str | None = _key("`most likely` if `cause_error` is below the limit, else `partly`")
     cause_error: float | None = _key("greatest error with this cause corrected")
-    remedy: str | None = _key("arguments that take the cause into account, as `name=value`")
+    remedy: str | None = _key("arguments `name=value` that undo the cause, or what else to do")
 
     error_start: float = field(default=0.0, compare=False)
     """Error of the first row, or of its rates."""

@@ -150,7 +150,7 @@ def _start(t: Array, axis: Array) -> tuple[Array, float]:
 
     The error is the difference between polynomials of two degrees.
     """
-    t, rows = np.unique(t[: 2 * _FIRST], return_index=True)  # times may repeat
+    t, rows = np.unique(t, return_index=True)  # times may repeat
     span, n = np.ptp(t[:_FIRST]), axis[0]
     since, first = (t[:_FIRST] - t[0]) / span, axis[rows][:_FIRST]
     rate, other = (np.polyfit(since, first, x)[-2] / span for x in (5, 4))

@@ -31,7 +31,8 @@ _SURE = 4.0
 """Standard deviations of a neighbour that is shown; more if it is searched at many places, or in
 windows."""
 _MAYBE = 2.5
-"""Standard deviations within which a neighbour may be there unseen."""
+"""Standard deviations within which a neighbour may be there unseen, and from which rows may be
+lost."""
 _ALIKE = 6.0
 """Difference of chi^2 below which two neighbours explain a recording equally well."""
 _EDGE = 6
@@ -416,7 +417,7 @@ class Neighbours:
         return self._ranked(found)
 
     def _ranked(self, found: list[Finding]) -> list[Finding]:
-        """Return findings by their scores: log likelihoods, less the costs of their parameters."""
+        """Return findings by their scores: falls of -2 log(likelihood) minus costs."""
         best = min(found, key=lambda x: x.chi2, default=None)
         count = best.chi2 / best.noise if best else 0.0  # of independent residuals
         for x in found:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.rotations import within_half_turn
+from ..arithmetic.rotations import directed, within_half_turn
 from ..arithmetic.text import uncertain_text
 from ..arithmetic.types import Array
 from ..errors import AbsentError, joined
@@ -174,7 +174,11 @@ class Outcome(HasRecord):
         return [x for x in self.reasons if x.kind in ADVICE]
 
     def failures(self) -> list[Reason]:
-        """Return the reasons why the fit has failed; other causes that are sure need no machine."""
+        """Return the reasons why the fit has failed.
+
+        A machine is left out if another reading is good, or if the spin decays and the machine is
+        not a decay.
+        """
         others = {Kind.READING} if DECAY in self.shown else {Kind.READING, Kind.WINDOWS}
         is_misread = any(x.kind in others for x in self.hints)
         kept = [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
@@ -202,9 +206,8 @@ class Outcome(HasRecord):
             where = f"the pivot is at {pivot}: subtract it" if str(pivot) else "is it at the pivot?"
             varies = "the distance of the marker from the origin varies with its direction"
             yield Reason(Kind.DATA, f"{varies}: {where}")
-        lengths = np.linalg.norm(
-            self.recording.source.given.get("quaternion", np.ones((1, 4))), axis=1
-        )
+        given = self.recording.source.given.get("quaternion", np.ones((1, 4)))
+        lengths = np.linalg.norm(directed(given), axis=1)  # 0 is a missing number
         least, most = np.nanmin(lengths), np.nanmax(lengths)
         if most > _LENGTHS * least:
             text = f"the length of the quaternion varies from {least:.3g} to {most:.3g}"

@@ -326,6 +326,14 @@ def test_rounded_rows_that_are_close_show_the_motion() -> None:
     assert (found.a_ratio, found.b_ratio) == pytest.approx((1.93, 0.9), rel=5e-3)
 
 
+def test_many_rows_of_the_first_time() -> None:
+    """A recorder may repeat the first row until the top moves."""
+    other = solve(TOP.replace(C=0.9 * 0.006, g=1.93 * 9.81))
+    t = np.append(np.zeros(20), T)
+    found = compare(TOP, t, quaternion=np.stack([*other.table(t, ["quaternion"]).values()], axis=1))
+    assert (found.a_ratio, found.b_ratio) == pytest.approx((1.93, 0.9), rel=1e-3)
+
+
 def test_rounded_times_are_named() -> None:
     """The times of a top that is not in the table are rounded, too: the numbers are not."""
     t = np.linspace(0, 0.9773, 201)

@@ -189,6 +189,15 @@ def test_a_quaternion_whose_components_are_smoothed_is_named() -> None:
     assert said.startswith("the length of the quaternion varies from 0."), said
 
 
+def test_a_quaternion_of_length_0_is_a_missing_number() -> None:
+    """Trackers write it while they do not see the top."""
+    t, angles = seen(*ANGLES, rows=240)
+    turns = Rotation.from_euler("ZXZ", np.stack([angles[x] for x in ("psi", "theta", "phi")], 1))
+    quaternion = turns.as_quat(scalar_first=True)
+    quaternion[100:103] = 0
+    assert fit(t, quaternion=quaternion).verdict == "good"
+
+
 def test_reasons_are_in_the_order_of_their_kinds() -> None:
     t, angles = seen()
     angles["theta"][30] += 1.0
