@@ -172,13 +172,15 @@ ENGINE = Rotation.from_matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])
     ("make", "reason"),
     [
         (lambda x: {"axis": axis_of(x["theta"], x["psi"])[:, ::-1]}, "use align=up=x"),
-        (
+        pytest.param(
             lambda x: {"quaternion": np.roll(_of_body(x), -1, axis=1)},
             "the quaternion is xyzw and was read as wxyz: quaternion_order=xyzw",
+            marks=pytest.mark.slow,
         ),
-        (
+        pytest.param(
             lambda x: {"axis": -axis_of(x["theta"], x["psi"])},
             "or the marker is opposite to the centre of mass: use align=up=-z",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             lambda x: {"quaternion": _of_body(x, ENGINE)},
@@ -198,7 +200,10 @@ def test_another_frame_is_named(make: Any, reason: str) -> None:
 @pytest.mark.parametrize(
     ("start", "rows", "way", "said"),
     [
-        ({}, 1.25, 1, "; the nutation is aliased, with 1.25 rows per period: record more"),
+        pytest.param(
+            *({}, 1.25, 1, "; the nutation is aliased, with 1.25 rows per period: record more"),
+            marks=pytest.mark.slow,
+        ),
         ({"psidot0": 1.1, "thetadot0": 1.7, "r0": 73}, 1.25, 1, "align=up=-z; or the nutation is"),
     ],
 )
@@ -275,6 +280,7 @@ def test_angles_in_radians_are_named() -> None:
     assert "radians" in fitted(t, degrees).hints[-1]
 
 
+@pytest.mark.slow
 def test_rounded_times_are_named() -> None:
     t, seen = recorded("theta", "psi", rows=80, noise=0.1, seed=8)
     outcome = fitted(np.floor(10 * t), seen)

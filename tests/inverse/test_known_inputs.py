@@ -126,6 +126,7 @@ def test_no_faster_spin_meets_a_known_moment() -> None:
     assert failure.endswith("omit C, or check m, g, s, the unit of t")
 
 
+@pytest.mark.slow
 def test_known_inputs_that_are_right_do_not_hide_the_cause() -> None:
     t, seen = recorded("theta", "phi", "psi", rows=80, noise=0.1, seed=8)
     turned = seen | {"theta": math.pi / 2 - seen["theta"]}
@@ -133,7 +134,10 @@ def test_known_inputs_that_are_right_do_not_hide_the_cause() -> None:
     assert "from the horizontal" in fitted(t, turned, known=known).failure()
 
 
-@pytest.mark.parametrize("known", [{"r0": 600}, {"C": 1.7458e-3}])
+_OF_A_SPIN = pytest.param({"r0": 600}, marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize("known", [_OF_A_SPIN, {"C": 1.7458e-3}])
 def test_a_known_input_decides_the_direction_of_psi(known: dict[str, float]) -> None:
     """At 120 rows per second, written in microseconds; with psi reversed a slower spin fits."""
     top = recordings.TOP.replace(r0=600, theta0_deg=40, psidot0=1.5, thetadot0=4)
@@ -145,6 +149,7 @@ def test_a_known_input_decides_the_direction_of_psi(known: dict[str, float]) -> 
     assert not outcome.recording.is_mirrored
 
 
+@pytest.mark.slow
 def test_a_known_tilt_that_is_wrong_is_questioned() -> None:
     t, seen = recorded("psi", rows=60, noise=0.05, seed=8)
     outcome = fitted(t, seen, known=LAB | {"theta0_deg": 20})

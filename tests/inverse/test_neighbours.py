@@ -156,7 +156,7 @@ def test_rows_that_repeat_another_are_named_but_not_those_of_a_coarse_encoder() 
     assert repeated(recording_from(t, **coarse)) == ""
 
 
-@pytest.mark.parametrize("lost", [1, 3])
+@pytest.mark.parametrize("lost", [1, pytest.param(3, marks=pytest.mark.slow)])
 def test_lost_rows_are_found(lost: int) -> None:
     """If the rows of a recording are numbered although some are lost."""
     t, angles = seen()

@@ -90,6 +90,7 @@ def test_a_known_moment_selects_the_spin(r0: float) -> None:
     assert any(x.startswith("known C is not used") for x in unsure.notes) == (abs(r0) > 622)
 
 
+@pytest.mark.slow
 def test_a_toy_that_turns_faster_than_its_frames() -> None:
     """At 1.6 turns per frame, b/a allows for any C/A and either direction of psi."""
     body = {"m": 0.1, "s": 0.04, "g": 9.81}
