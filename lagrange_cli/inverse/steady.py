@@ -40,6 +40,8 @@ _UNIFORM = 1.75
 """Half of a range over the standard deviation of a number in it."""
 _SURE = 4.0
 """Standard deviations of a rate that is not 0."""
+_KNOWN = 1e-9
+"""Standard deviation of b/a over that without known inputs, up to which they alone give it."""
 _Pair = tuple[float, float]
 _MEANINGS = {
     "mean_tilt": "mean tilt",
@@ -66,7 +68,8 @@ class Means:
     """A steady precession whose parameters are its tilt, psi', phi' and the factor 1/(1 - x).
 
     The factor is that of b/a by the neglected term.  It counts if known inputs do not give C/A; b
-    and a have no meaning then but their ratio.
+    and a have no meaning then but their ratio.  One that follows from a known A or C is NaN,
+    so that it is not compared with it: a, if m, g, s and A are known, or else b, if A and C are.
     """
 
     x: Array
@@ -76,7 +79,7 @@ class Means:
     """Whole turns per row, as a rate, that r0 exceeds the visible rate by."""
 
     def quantities(self, at: Array, has: Mapping[str, Any]) -> dict[str, Array]:
-        """Return the quantities of motions, shape (tries,); a is NaN if known inputs give it."""
+        """Return the quantities of motions, shape (tries,), and b/a."""
         tilt, turn, spin, factor = at.T
         along = turn * np.cos(tilt)
         v = {TILT: tilt, "thetadot0": 0 * tilt, "psidot0": turn}
@@ -84,14 +87,16 @@ class Means:
         r0 = spin + along + self.turns if self.spins else body.get("r0", along)
         with np.errstate(all="ignore"):
             if "A" in body and body.keys() >= WEIGHT:
-                b = body["m"] * body["g"] * body["s"] / body["A"] / turn + along
-                a = np.nan * b
+                a = 2 * body["m"] * body["g"] * body["s"] / body["A"]
+                b = a / (2 * turn) + along
+                v |= {"a": np.nan * a, "b": b, "b/a": b / a}
             elif {"A", "C"} <= body.keys():
                 b = r0 * body["C"] / body["A"]
                 a = 2 * turn * (b - along)
+                v |= {"a": a, "b": np.nan * b, "b/a": b / a}
             else:
-                b, a = r0, 2 * turn * r0 / factor
-        return v | {"a": a, "b": b, "r0": r0}
+                v |= {"a": 2 * turn * r0 / factor, "b": r0, "b/a": factor / (2 * turn)}
+        return v | {"r0": r0}
 
     def turned(self, turns: float) -> Means:
         """Return the same with a spin that is faster by whole turns per row."""
@@ -180,8 +185,7 @@ def steady_outcome(
             weight = 2 * math.prod(has[x] for x in "msg" if x in has)
             unknown = [x for x in "msg" if x not in has]
             over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
-            is_exact = "A" in has and not unknown
-            numbers["b/a"] = v["b"] / (weight / has["A"] if is_exact else v["a"])
+            numbers["b/a"] = v["b/a"]
             product = numbers["b/a"] * weight / (v["r0"] if is_sure else 1)
             numbers[f"C{over}" if is_sure else f"C*r0{over}"] = product
         return {x: y for x, y in numbers.items() if x not in known}
@@ -189,6 +193,7 @@ def steady_outcome(
     numbers = {
         key: Number(value, std, _MEANINGS.get(bare_name(key), "from the mean rates"), own)
         for key, (value, std, own) in found.vector.numbers(computed).items()
+        if std > _KNOWN * found.free.get(key, 0.0)
     }
     spin, turned = (means.get(x, _NONE) for x in ("phi", "psi"))
 

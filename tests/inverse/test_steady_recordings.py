@@ -90,6 +90,20 @@ def test_a_known_moment_selects_the_spin(r0: float) -> None:
     assert any(x.startswith("known C is not used") for x in unsure.notes) == (abs(r0) > 622)
 
 
+def test_a_known_moment_that_no_number_contradicts_is_not_compared() -> None:
+    """Without m, g and s, C follows from the known C itself; with all of them, b/a is no news."""
+    t, seen = recorded(
+        "theta", "phi", "psi", top=TOP.replace(r0=400), rows=200, seconds=0.5, seed=15
+    )
+    for C in (2.4e-3, 2.5e-3):
+        outcome = fitted(t, seen, known={"A": 4.45e-3, "C": C})
+        assert outcome.verdict == "good, no nutation"
+        assert (outcome.distances, "b/a" in outcome.numbers) == ({}, True)
+    del seen["phi"]
+    outcome = fitted(t, seen, known=LAB | {"A": 4.45e-3, "C": 2.5e-3, "r0": 400})
+    assert ([*outcome.distances], "b/a" in outcome.numbers) == (["C"], False)
+
+
 @pytest.mark.slow
 def test_a_toy_that_turns_faster_than_its_frames() -> None:
     """At 1.6 turns per frame, b/a allows for any C/A and either direction of psi."""
