@@ -36,12 +36,8 @@ class _Engine(ExactMotion):
         """Return attitudes and rates at increasing times; NaN if they take too long."""
         from scipy.integrate import solve_ivp  # start-up
 
-        top, weight, hand, count = (
-            self.motion.top,
-            self.weight,
-            self.hand,
-            iter(range(_MOST_SLOPES)),
-        )
+        top, weight, hand = self.motion.top, self.weight, self.hand
+        count = iter(range(_MOST_SLOPES))
         A, C, torque = float(top.A), float(top.C), float(top.m) * float(top.g) * float(top.s)
         tilt = float(top.inputs(radians=True)["theta0_rad"])
         sine, cosine = math.sin(tilt), math.cos(tilt)

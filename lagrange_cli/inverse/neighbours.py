@@ -199,11 +199,8 @@ class Finding:
         sure = values > 1e-6 * np.linalg.norm(raw)
         left, inverse, count = left[:, sure], axes[sure].T / values[sure], max(int(sure.sum()), 1)
         parts = left.T @ fit.rest
-        rest, self.sizes, self.by_one = (
-            fit.rest - left @ parts,
-            inverse @ parts,
-            -fit.inverse @ shared,
-        )
+        rest = fit.rest - left @ parts
+        self.sizes, self.by_one = inverse @ parts, -fit.inverse @ shared
         self.fall, self.chi2 = float(parts @ parts), float(rest @ rest)
         self.rests = fit.by_channel(rest)
         wide = np.repeat([x.widening() for x in self.rests], [x.y.size for x in self.rests])
