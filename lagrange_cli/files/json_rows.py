@@ -72,6 +72,8 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
         sizes = {x: len(y) for x, y in columns.items()}
         if len({*sizes.values()}) > 1:
             raise LagtopError(f"columns must be equally long, got {shown(sizes)}")
+        count = {*sizes.values()}.pop()
+        columns = {x: y for x, y in lists.items() if len(y) == count}  # texts, too
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     is_row = known([x for x in value if x not in lists])
     for inner in value.values() if depth and not is_row else ():

@@ -36,7 +36,7 @@ lost."""
 _ALIKE = 6.0
 """Difference of chi^2 below which two neighbours explain a recording equally well."""
 _EDGE = 6
-"""Rows at either end that show no step."""
+"""Rows at either end that show no step, fewer in a recording without others."""
 _EXPLAINS = 4.0
 """Fall of chi^2, as a factor, by a neighbour that explains a motion far from that of any top."""
 _LIKELIEST = 5
@@ -374,13 +374,14 @@ class Neighbours:
         rows = np.broadcast_to(np.arange(self.rows.size), present.shape)[present]
         order = np.argsort(-rows, kind="stable")
         last = np.flatnonzero(np.diff(rows[order], append=-1))  # of the numbers of a row
+        inner = slice(edge := min(_EDGE, (last.size - 1) // 2), last.size - edge)
         for one in self._from_row(self.motion):
             column = self.columns(one.changes[0])
             parts = np.stack([column * self.rest, column**2, *(column * self.basis.T)])
             work, size, *taken = np.cumsum(parts[:, order], axis=1)[:, last]
             left = size - np.sum(np.square(taken), axis=0)
             gains = np.where(left > 0.02 * size.max() / self.rows.size, work**2, 0.0)
-            row = int(rows[order][last[np.argmax((gains / (left + 1e-300))[_EDGE:-_EDGE]) + _EDGE]])
+            row = int(rows[order][last[np.argmax((gains / (left + 1e-300))[inner]) + edge]])
             found.append(Finding(self, one._replace(row=row, tried=self.rows.size), self.motion))
         return found
 

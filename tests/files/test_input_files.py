@@ -110,3 +110,10 @@ def test_json_of_many_levels_is_refused(command: str, levels: int, lagtop: Lagto
         for content in (text, f'{{"r0": {text}}}\n'):
             result = lagtop(*command.split(), input=content)
             assert (result.exit_code, result.stderr.count("\n")) == (65, 1), result.stderr
+
+
+def test_columns_of_text_in_json_are_columns(lagtop: Lagtop) -> None:
+    """Beside columns of numbers, as pandas writes them."""
+    content = json.dumps({"id": ["a", "b"], "r0": {"0": "50", "1": "60"}, "theta0_deg": [10, 20]})
+    found = lagtop("sweep", "-", "--keys", "r0", input=content).stdout
+    assert found.splitlines() == ["id,r0,error", "a,50.0,", "b,60.0,"]

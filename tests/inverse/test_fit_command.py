@@ -144,3 +144,11 @@ def test_a_failed_fit_writes_no_scene_and_marks_what_is_not_determined(
     assert outcome.is_open  # another top explains it as well
     rows = fit_report([outcome], "data", "").rows
     assert all(x.meaning.startswith("not determined: ") for x in rows)
+
+
+@pytest.mark.parametrize("rows", [13, 12])
+def test_a_recording_of_few_rows(lagtop: Lagtop, tmp_path: Path, rows: int) -> None:
+    """In which every row is next to an end."""
+    lines = Path(SAMPLE).read_text().splitlines()
+    (tmp_path / "few.csv").write_text("\n".join(lines[: 3 + rows]))
+    assert lagtop("fit", str(tmp_path / "few.csv")).exit_code in {0, 1}
