@@ -56,7 +56,7 @@ def known_inputs(found: Given) -> Known:
     check_names("known", [*given] or ["m"], INPUTS)
     words = {name for name in given if given[name] in STEADY_WORDS}
     known = {x: checked_double(x, y) for x, y in given.items() if x not in words}
-    for name in ("m", "s", "g", "A", "C", "r0"):
+    for name in ("m", "s", "g", "A", "C", "r0", "spin_period"):
         if known.get(name) == 0:
             raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
     for name in known.keys() & FORMS.keys():
