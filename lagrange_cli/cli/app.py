@@ -32,7 +32,7 @@ _MODULES = {
     "stability": "bench",
 }
 """Commands that share the module of another command."""
-_MEGABYTES = {"numpy": 100, "scipy": 120}
+_MEGABYTES = {"numpy": 100, "scipy": 200}
 """Memory of packages with one thread of OpenBLAS, which suffices here."""
 _COMPLETION = "_LAGTOP_COMPLETE"
 _LAST_SECOND = 253_402_300_799

@@ -164,7 +164,7 @@ def test_closed_standard_input(line: str) -> None:
 
 def test_too_little_memory_for_numpy_and_scipy() -> None:
     """OpenBLAS may wait for it without end, and then no signal but SIGKILL stops the program."""
-    for size, name in ((90000, b"numpy needs 100"), (180000, b"scipy needs 120")):
+    for size, name in ((90000, b"numpy needs 100"), (180000, b"scipy needs 200")):
         done = shell(f"ulimit -v {size}; lagtop sweep")
         assert (done.returncode, done.stdout) == (69, b"")
         assert done.stderr == b"Error: out of memory: " + name + b" MB\n"
