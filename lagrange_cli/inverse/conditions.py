@@ -144,7 +144,8 @@ class Vector:
         """Return the derivatives of functions, by a share of the standard deviations."""
         steps = np.maximum(1e-2 * np.linalg.norm(self.spread, axis=1), 1e-9 * (np.abs(z) + 1e-3))
         found = _stacked(function, np.concatenate([z + np.diag(steps), z - np.diag(steps)]))
-        return np.asarray((found[: z.size] - found[z.size :]).T / (2 * steps))
+        with np.errstate(invalid="ignore"):  # of numbers that are infinite
+            return np.asarray((found[: z.size] - found[z.size :]).T / (2 * steps))
 
     def numbers(self, function: Function) -> dict[str, Estimate]:
         """Return finite functions of the vector, with standard deviations."""
