@@ -110,7 +110,8 @@ def test_a_top_next_to_the_vertical() -> None:
 
 
 @pytest.mark.parametrize(
-    ("names", "theta0"), [(("theta", "phi"), math.pi), (("theta", "psi"), 0.0)]
+    ("names", "theta0"),
+    [pytest.param(("theta", "phi"), math.pi, marks=pytest.mark.slow), (("theta", "psi"), 0.0)],
 )
 def test_a_top_that_starts_upright_with_a_rate(names: tuple[str, ...], theta0: float) -> None:
     truth, t = {"a": TRUTH["a"], "b": 17.0, "r0": 30.0}, np.linspace(0, 1.2, 150)
@@ -121,6 +122,7 @@ def test_a_top_that_starts_upright_with_a_rate(names: tuple[str, ...], theta0: f
     assert_true(fitted(t, seen), truth)
 
 
+@pytest.mark.slow
 def test_irregular_times_with_two_rows_per_period() -> None:
     rng = np.random.default_rng(7)
     t = np.concatenate([[0], np.sort(rng.uniform(0, 20, 119))])
@@ -155,6 +157,7 @@ def test_the_recordings_are_what_the_script_writes() -> None:
         assert recordings.text(camera) == (recordings.SAMPLES / camera.name).read_text()
 
 
+@pytest.mark.slow
 def test_noise_of_many_rows_is_averaged() -> None:
     """A thousand rows find the minimum, all rows refine it: uncertainties fall as 1/sqrt(rows)."""
     few, many = (fitted(*recorded("theta", "psi", rows=x, seed=8)) for x in (150, 2400))
