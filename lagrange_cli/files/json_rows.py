@@ -67,7 +67,8 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
         return value if isinstance(value, list) else [value]
     value = {x: _array(y) for x, y in value.items()}
     lists = {x: y for x, y in value.items() if isinstance(y, list)}
-    columns = {x: y for x, y in lists.items() if y and not isinstance(y[0], str)}
+    texts = [x for x, y in lists.items() if not y or isinstance(y[0], str)]
+    columns = {x: y for x, y in lists.items() if x not in texts or known([x])}
     if known([*columns]):
         sizes = {x: len(y) for x, y in columns.items()}
         if len({*sizes.values()}) > 1:

@@ -117,3 +117,6 @@ def test_columns_of_text_in_json_are_columns(lagtop: Lagtop) -> None:
     content = json.dumps({"id": ["a", "b"], "r0": {"0": "50", "1": "60"}, "theta0_deg": [10, 20]})
     found = lagtop("sweep", "-", "--keys", "r0", input=content).stdout
     assert found.splitlines() == ["id,r0,error", "a,50.0,", "b,60.0,"]
+    longer = lagtop("sweep", "-", input='{"r0": ["50", "60", "70"], "theta0_deg": [1, 2]}')
+    said = 'columns must be equally long, got {"r0": 3, "theta0_deg": 2}'
+    assert (longer.exit_code, longer.stdout, said in longer.stderr) == (65, "", True)
