@@ -33,7 +33,7 @@ def _parse_spans(text: str) -> list[float]:
 @opt.top("[SCENE]...", is_scene=None)
 @opt.option(
     "--spans",
-    type=opt.Parsed("X,...", _parse_spans),
+    type=opt.Listed("X,...", _parse_spans),
     help="Lengths in nutation periods; several show how errors grow.  [default: 20.3]",
 )
 @opt.option("--n", type=opt.count(MOST_TIMES), default="1e4", help="Number of times.")
@@ -82,7 +82,7 @@ def bench_command(
     motions = {name: opt.motion_of(found) for name, found in founds.items()}
     opt.write_report(
         out,
-        lambda: bench(motions, methods, spans or [PERIODS], n, with_progress),
+        lambda: bench(motions, methods, sorted({*(spans or [PERIODS])}), n, with_progress),
         plot,
         lambda report: methods_figure(report, cost, others),
     )

@@ -37,7 +37,7 @@ def _parse_steps(text: str) -> list[float]:
 @opt.recording
 @opt.option(
     "--step-sizes",
-    type=opt.Parsed("X,...", _parse_steps),
+    type=opt.Listed("X,...", _parse_steps),
     help="Step sizes such as 0.01 or 1/60, for the order of convergence.",
 )
 @opt.option(

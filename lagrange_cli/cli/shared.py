@@ -53,6 +53,10 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
             raise LagtopError(f"{param.opts[-1] if param else ''} {text}") from None
 
 
+class Listed(Parsed):
+    """The type of comma-separated values: an option that is given twice has all of them."""
+
+
 def count(most: float = 1e9) -> Parsed:
     """Return the type of a whole number from 1 to `most`, which may be written as 1e6."""
 
@@ -94,14 +98,14 @@ def _parse_list(text: str) -> list[str]:
 
 
 NUMBER = Parsed("X", parse_number)
-LIST = Parsed("NAME,...", _parse_list)
+LIST = Listed("NAME,...", _parse_list)
 TIME = values()
 _DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
 
 
 def option(*names: str, **settings: Any) -> Callable[[F], F]:
-    """Declare an option; a list of names that is given twice is one list."""
-    if settings.get("type") is LIST:
+    """Declare an option."""
+    if isinstance(settings.get("type"), Listed):
         settings |= {"multiple": True, "callback": lambda _, __, lists: [*chain(*lists)] or None}
     return click.option(*names, **settings)
 

@@ -6,6 +6,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +17,7 @@ from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, arg
 from ..recordings.frames import alignment_of, in_frames, own_frames, refined, turn_of
-from ..recordings.misreadings import misreadings
+from ..recordings.misreadings import evenly_timed, misreadings
 from ..recordings.options import Alignment
 from ..top.inputs import BODY, replaced_by
 from .checks import CHANCE
@@ -26,7 +27,7 @@ from .measured import LEAST_ROWS, Measured, measured
 from .neighbours import DECAY, SLOWING, lost_text
 from .outcome import GOOD, STEADY, Outcome
 from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
-from .rows import calmness, evenly_timed, release, with_gap
+from .rows import calmness, release, with_gap
 from .search import best_fit
 
 _BUDGET = 8.0
@@ -129,10 +130,11 @@ class Advice:
         recording = self.recording
         if (seen := np.unique(recording.t).size) < _LEAST_TIMES * recording.t.size:
             yield f"t has only {seen} values in {recording.t.size} rows: write it with more digits"
-        even = evenly_timed(recording)
-        if even is not None and self._is_good(even, self.known, also=STEADY):
-            apart = f"the rows are {even.frame:.6g} apart"
-            yield f"t is rounded: write it with more digits ({apart})"
+        for row in misreadings(recording.source):
+            if row.undo is evenly_timed:
+                even = replace(measured(row.undo(recording.source)), sigma=recording.sigma)
+                if self._is_good(even, self.known, also=STEADY):
+                    yield f"{row.name}: {row.remedy} (the rows are {even.frame:.6g} apart)"
 
     def _names(self) -> Iterator[str]:
         """Yield that phi may be the precession, as in most books, if the fit is then good."""

@@ -1,4 +1,4 @@
-"""Rows that a recorder repeated, gaps in time, rounded times, and rows before a release."""
+"""Rows that a recorder repeated, gaps in time, and rows before a release."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.types import Mask
-from ..recordings.clocks import even_times
 from .measured import LEAST_ROWS, Measured
 from .signals import noise_of, oscillation_in, signals_in
 
@@ -62,12 +61,6 @@ def with_gap(recording: Measured, row: int, count: int) -> Measured:
     """Return the recording with the times that rows have if some were lost before one of them."""
     later = np.arange(recording.t.size) >= row
     return replace(recording, t=recording.t + count * recording.frame * later)
-
-
-def evenly_timed(recording: Measured) -> Measured | None:
-    """Return a recording at even times, if its times are these after rounding to some digits."""
-    even = even_times(recording.t_start + recording.t)
-    return None if even is None else replace(recording, t=even - even[0])
 
 
 def calmness(recording: Measured) -> float:

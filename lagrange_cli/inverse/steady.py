@@ -68,8 +68,8 @@ class Means:
     """A steady precession whose parameters are its tilt, psi', phi' and the factor 1/(1 - x).
 
     The factor is that of b/a by the neglected term.  It counts if known inputs do not give C/A; b
-    and a have no meaning then but their ratio.  One that follows from a known A or C is NaN,
-    so that it is not compared with it: a, if m, g, s and A are known, or else b, if A and C are.
+    and a have no meaning then but their ratio.  A number that a known A or C itself gives is NaN,
+    so that they are not compared: a, if m, g, s and A are known, or else b, if A and C are.
     """
 
     x: Array

@@ -116,8 +116,6 @@ def roots_of_cubic(
 ) -> tuple[Bounded, Bounded, Bounded]:
     """Return a X, Y and Z from a x^3 + c2 x^2 + c1 x + c0 with c0 >= 0 and the roots X, Y and -Z,
     where X is the largest, and Y and Z are not negative.
-
-    X leaves a quadratic with a negative last coefficient, so that its discriminant is a sum.
     """
     largest = largest_root(c2, a * c1, a * (a * c0))
     total, product = (c1 + a * c0 / largest) / largest, c0 / largest

@@ -13,14 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.bounded import (
-    EPS,
-    Bounded,
-    atan2,
-    choose,
-    relative_errors,
-    sqrt,
-)
+from ..arithmetic.bounded import EPS, Bounded, atan2, choose, relative_errors, sqrt
 from ..arithmetic.formulas import evaluated
 from ..arithmetic.types import Array, Mask
 from ..solver.facts import FAST, Regime

@@ -83,7 +83,8 @@ def test_steps(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
     coarse = write(tmp_path / "coarse.csv", rk4(Body.of(TOP), 4e-3, 0.5))
     shown = lagtop("compare", coarse, right, *OPTIONS, "--step-sizes", "4e-3,2e-3").stdout
     assert "The error falls with the step; the order of convergence is 4." in shown
-    again = lagtop("compare", right, right, *OPTIONS, "--step-sizes", "1/250,1/500").stdout
+    sizes = "--step-sizes", "1/250", "--step-sizes", "1/500"
+    again = lagtop("compare", right, right, *OPTIONS, *sizes).stdout
     assert "does not fall with the step: the numbers may have been rounded." in again
 
 
