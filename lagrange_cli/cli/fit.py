@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.text import quoted
 from ..errors import LagtopError, SomeFailedError, marked
 from ..file_bytes import extension
-from ..names import split_names
+from ..names import repeated, split_names
 from ..output.destination import Output, opened
 from ..output.document import Document
 from ..output.terminal import is_screen, is_terminal, one_line
@@ -29,6 +29,8 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
     parts = [part.partition("=") for part in split_names(text)]
     if not all(value for *_, value in parts):
         raise LagtopError(f"must be one number or theta=0.3,psi=0.5, got {quoted(text)}")
+    if (twice := repeated(name.strip() for name, *_ in parts)) is not None:
+        raise LagtopError(f"must name each angle once, got {quoted(twice)} twice")
     return {name.strip(): opt.parse_positive(value) for name, _, value in parts}
 
 

@@ -66,7 +66,7 @@ def known_inputs(found: Given) -> Known:
             raise LagtopError(wrong, name)
     whole = in_all_forms(known)
     plain = {x: float(whole[x]) for x in (*BODY, *START[1:]) if whole.has(x)}
-    plain |= {x: y for x, y in known.items() if replaced_by(x) == TILT or x == "r0"}
+    plain |= {x: y for x, y in known.items() if replaced_by(x) in {TILT, "r0"}}
     moment = plain.get("A", plain.get("C", 1.0))
     top = Top(**{"m": 1.0, "s": 1.0, "g": 1.0, "A": moment, "C": moment, **plain})
     if found.is_body:

@@ -66,6 +66,7 @@ SAMPLE = str(recordings.SAMPLES / "recording.csv")
         (f"{SAMPLE} --window 3 --r0 50", 2, "--r0 is not the same in all windows: leave it out"),
         (f"{SAMPLE} --g 0", 2, "--g must not be 0 in a fit: leave it out"),
         (f"{SAMPLE} --spin-period 0", 2, "--spin-period must not be 0 in a fit: leave it out"),
+        (f"{SAMPLE} --phidot0 1e300", 2, "--phidot0 must be within 1e100 in magnitude, got 1e+300"),
         (f"{SAMPLE} --A-cm 1", 2, "--A-cm must be given with m and s, as A = A_cm + m s^2"),
     ],
 )

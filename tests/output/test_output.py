@@ -386,7 +386,7 @@ def test_texts_in_a_table_are_one_printable_line_each() -> None:
     assert len(lines) == 2 + len(texts)
     assert [line.split()[0] for line in lines[2:5]] == ["a\\x0cb", "c\\u2028d", "e\\nf\\x85"]
     assert "..." in lines[5]
-    with pytest.raises(LagtopError, match="format must be csv or json for more than 10000 rows"):
+    with pytest.raises(LagtopError, match="csv, json, ndjson or parquet for more than 10000 rows"):
         text_of("table", ["a"], *[[np.zeros(4000)]] * 3)
 
 

@@ -7,7 +7,9 @@ from io import BytesIO
 from typing import Any, BinaryIO
 
 from ...errors import LagtopError
+from ...names import listed
 from ..document import Document, Page, rows_grid, texts_of
+from . import FORMATS, format_of
 
 Columns = Sequence[Any]
 """Arrays of numbers, each of one or several columns, and lists of texts and JSON values."""
@@ -89,6 +91,7 @@ class ForPeople(Format):
         for block in blocks:
             rows += texts_of(block)
             if len(rows) > MOST_DRAWN_ROWS:
+                others = listed(x for x in FORMATS if not format_of(x).is_for_people)
                 most = f"for more than {MOST_DRAWN_ROWS} rows"
-                raise LagtopError(f"format must be csv or json {most}", "format")
+                raise LagtopError(f"format must be {others} {most}", "format")
         stream.write(self.page([rows_grid(names, rows)], width).encode())

@@ -15,7 +15,7 @@ from ..document import Document
 from ..text import json_text
 from .base import Columns, Format
 
-_OTHERS = f"leave out {arg('digits')} and {arg('certify')}, or use csv or json"
+_OTHERS = f"leave out {arg('digits')} and {arg('certify')}, or use another format"
 
 _GROUP_ROWS = 100_000
 """The least number of rows of a row group: readers are slow with small ones."""
