@@ -356,8 +356,10 @@ def _layout(
         for mark, names in _splits(text).items():
             is_one = mark == " " and all(len(data[x]) == 1 for x in marks)  # with its unit
             cells, delimiters = [text.strip()] if is_one else names, sorted(marks, key=mark.__ne__)
+            if mark != " " and len(data.get(mark, ())) == len(names):
+                delimiters = [mark]  # of `3 4,4` below `r0,s` the first cell is no number
             fits = [x for x in delimiters if len(data[x]) == len(cells)]
-            rank = bool(fits), mark in marks, known(names)
+            rank = bool(fits), mark in delimiters, known(names)
             if rank[-1] and (best is None or rank > best[0]) and (fits or text in head):
                 best = rank, cells, start, [*fits, *delimiters, mark][0]
     above = splits[first - 1] if first else {}

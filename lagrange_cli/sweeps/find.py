@@ -224,8 +224,9 @@ def _at(search: Search, point: Sequence[float]) -> str:
 def _distances(search: Search, off: Array) -> tuple[Array, Array]:
     """Return the spread of each number in a scan, and the distances of tops in these spreads."""
     size = np.maximum(np.abs([*search.targets.values()]), 1e-300)
-    finite = (x[np.isfinite(x)] for x in off.T)
-    spread = np.array([x.std() if x.size else 0.0 for x in finite])
+    most = np.max(np.abs(off), axis=0, initial=1e-300, where=np.isfinite(off))
+    finite = (x[np.isfinite(x)] for x in (off / most).T)  # squares of 1e200 are no doubles
+    spread = most * [x.std() if x.size else 0.0 for x in finite]
     scale = np.where(spread > _SWEPT * size, spread, size)
     return scale, np.nan_to_num(np.linalg.norm(off / scale, axis=1), nan=np.inf)
 
@@ -290,9 +291,9 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
 
 
 def _bisected(f: Callable[[float], Any], low: float, high: float) -> tuple[float, float]:
-    """Return neighbouring numbers, or close ones next to 0, between which f changes."""
+    """Return neighbouring numbers between which f changes."""
     first = f(low)
-    while low < (middle := low + (high - low) / 2) < high and high - low > _TINY:
+    while low < (middle := low + (high - low) / 2) < high:
         low, high = (middle, high) if f(middle) == first else (low, middle)
     return low, high
 
