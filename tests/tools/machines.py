@@ -17,6 +17,8 @@ from scipy.integrate import solve_ivp
 from scipy.signal import savgol_filter
 
 Angles = dict[str, Array]
+_LOCKED = 0.1
+"""sin(theta) below which gimbals lock."""
 _PRECISE = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
 
 
@@ -25,7 +27,8 @@ def gimballed(a: float, b: float, r0: float, start: Array, t: Array, **sizes: fl
 
     `start` is (theta, thetadot, psidot).  The sizes are moments of a `stand` and a `yoke`, losses
     over the recording by a `drag` or `dry` friction of the spin and in the bearings of the
-    `vertical` and the `nodes`, and a `magnet`.
+    `vertical` and the `nodes`, and a `magnet`.  All angles are 0 if the axis comes near a
+    pole, where gimbals lock.
     """
     of = dict.fromkeys(("stand", "yoke", "drag", "dry", "vertical", "nodes", "magnet"), 0.0) | sizes
 
@@ -39,8 +42,13 @@ def gimballed(a: float, b: float, r0: float, start: Array, t: Array, **sizes: fl
         turn /= s * s + of["stand"]
         return [v, bend, w, turn, r0 / b * spin - w * c, -lost / t[-1]]
 
+    def height(_: float, y: Array) -> float:
+        return math.sin(y[0]) - _LOCKED
+
+    height.terminal = True  # type: ignore[attr-defined]
     first = [start[0], start[1], 0.0, start[2], 0.0, b]
-    theta, _, psi, _, phi, _ = solve_ivp(slope, (0, t[-1]), first, t_eval=t, **_PRECISE).y
+    found = solve_ivp(slope, (0, t[-1]), first, t_eval=t, events=height, **_PRECISE)
+    theta, _, psi, _, phi, _ = found.y if found.status == 0 else np.zeros((6, t.size))
     return {"theta": theta, "phi": phi, "psi": psi}
 
 
