@@ -60,12 +60,15 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
 
     An array may be an object whose keys are 0, 1, ..., as `DataFrame.to_json` of pandas writes it.
     Columns are lists, among which `known` counts known names.  The rows may be in an entry such as
-    `data`.  Raises LagtopError for columns of different lengths.
+    `data`, as lists below their names in `columns`.  Raises LagtopError for columns of different
+    lengths.
     """
     value = _array(value)
     if not isinstance(value, dict):
         return value if isinstance(value, list) else [value]
     value = {x: _array(y) for x, y in value.items()}
+    if isinstance(value.get("columns"), list) and _are_lists(value.get("data")):
+        return [value["columns"], *value["data"]]
     lists = {x: y for x, y in value.items() if isinstance(y, list)}
     texts = [x for x, y in lists.items() if not y or isinstance(y[0], str)]
     columns = {x: y for x, y in lists.items() if x not in texts or known([x])}
@@ -77,11 +80,16 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
         columns = {x: y for x, y in lists.items() if len(y) == count}  # texts, too
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     is_row = known([x for x in value if x not in lists])
-    for inner in value.values() if depth and not is_row else ():
+    inside = [x for name, x in value.items() if depth and not is_row and name != "schema"]
+    for inner in inside:
         rows = rows_of_value(inner, known, depth - 1) if isinstance(inner, dict) else inner
         if isinstance(rows, list) and len(rows) > 1 and isinstance(rows[0], dict):
             return rows
     return [value]
+
+
+def _are_lists(value: Any) -> bool:
+    return isinstance(value, list) and {*map(type, value)} == {list}
 
 
 def _array(value: Any) -> Any:

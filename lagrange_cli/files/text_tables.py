@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import parse_number, quoted
+from ..arithmetic.text import parse_number, quoted, shortened
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError, arg
 from .json_rows import MOST_CELLS, entries_of, json_value, rows_of_value, shown
@@ -100,6 +100,12 @@ class Table:
     """The unit of the numbers of rows in messages: `line` or `row`."""
     sizes: dict[str, int] = field(default_factory=dict)
     """The lengths of lists in JSON objects, by their names."""
+
+    @property
+    def described(self) -> str:
+        """The headings, or how many columns lack them, for messages."""
+        shown = shortened(", ".join(map(repr, self.headings or ())))
+        return shown or (f"{self.width} columns without headings" if self.width else "none")
 
     def cells(self, row: Any) -> list[Any]:
         """Return the cells of a row.  Raises LagtopError for a wrong quote and for wrong JSON."""
@@ -448,9 +454,12 @@ def _json_table(
             raise DataError(f"{name}, {error}") from None
         except LagtopError as error:
             raise DataError(f"{name}, line {number}: {error}") from None
-        table = replace(table, rows=[*enumerate(rows, 1)], place="row")
-        if rows and isinstance(rows[0], list):
-            return replace(table, headings=None, width=len(rows[0]))
+        first: Any = rows[0] if rows else None
+        are_lists = isinstance(first, list)
+        is_named = are_lists and {*map(type, first)} == {str} and not _are_numbers(first)
+        table = replace(table, rows=[*enumerate(rows[is_named:], 1)], place="row")
+        if are_lists:
+            return replace(table, headings=first if is_named else None, width=len(first))
     headings: dict[str, None] = {}
     wrong = None
     for number, row in table.rows:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import quoted, shortened
+from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from ..names import repeated
 from ..top.given import Given, gather
@@ -36,8 +36,8 @@ class Tops(NamedTuple):
     """For each input an array of any type, or one value for all tops; None if a top lacks it."""
     carried: Sequence[Sequence[Any]] = ()
     """The extra columns, which are copied to the output."""
-    lines: Sequence[int] | None = None
-    """The line number of each top, if the tops come from a file."""
+    places: Sequence[str] | None = None
+    """The line or row of each top, if the tops come from a file."""
     errors: Mapping[int, str] = {}
     """Messages of the errors found so far, by row."""
 
@@ -108,10 +108,10 @@ class TopsFile(NamedTuple):
     def arrays(self, shared: Mapping[str, Any]) -> Tops:
         """Return the inputs of the tops; `shared` inputs are the defaults of rows without error."""
         found, carried, errors = list[dict[str, Any]](), list[list[Any]](), dict[int, str]()
-        lines = list[int]()
-        for i, (line, row) in enumerate(self.table.rows):
+        places = list[str]()
+        for i, (number, row) in enumerate(self.table.rows):
             values, inputs = dict[str, Any](), dict[str, Any]()
-            lines.append(line)
+            places.append(f"{self.table.place} {number}")
             try:
                 cells = self.table.cells(row)
                 values = dict(zip(self.columns, cells, strict=False))
@@ -126,7 +126,7 @@ class TopsFile(NamedTuple):
             carried.append([values.get(name) for name in self.carried])
         names = {*shared, *(x for inputs in found for x in inputs)}
         arrays = {x: np.array([inputs.get(x) for inputs in found], object) for x in names}
-        return Tops(len(lines), arrays, [*zip(*carried, strict=True)], lines, errors)
+        return Tops(len(places), arrays, [*zip(*carried, strict=True)], places, errors)
 
     def _double(self, name: str, cell: Any) -> Any:
         """Return the input in a cell, a double or a word for psidot0.  Raises LagtopError."""
@@ -179,7 +179,7 @@ def read_tops(path: str, computed: Collection[str], decimal: str = "") -> TopsFi
         raise DataError(f"{name} must name each column once, got {twice!r} twice")
     if not units:
         wanted = f"must begin with a header that names inputs ({' '.join(INPUTS)})"
-        raise DataError(f"{name} {wanted}, got {quoted(','.join(headings))}")
+        raise DataError(f"{name} {wanted}, got {table.described}")
     return TopsFile(columns, carried, units, table)
 
 

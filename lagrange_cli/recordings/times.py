@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from ..files.tables import table_in
 from ..files.text_tables import Table
@@ -23,9 +22,8 @@ def read_times(path: str, decimal: str = "") -> ListedPoints:
     names = ["t"] * (table.width < 2) if table.headings is None else table.headings
     found = quantities_in(names).get("t")
     if found is None:
-        shown = shortened(", ".join(map(repr, names))) or f"{table.width} columns without headings"
         wanted = "the time must be a number below the heading t or time"
-        raise DataError(f"{table.name}: {wanted}, got {shown}")
+        raise DataError(f"{table.name}: {wanted}, got {table.described}")
     try:
         factor = in_known_unit("t", found, names).factor or Fraction(1)
     except LagtopError as error:

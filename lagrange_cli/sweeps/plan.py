@@ -83,9 +83,9 @@ class Sweep(NamedTuple):
         given = block.arrays(self.shared)
         keys = [*self.keys, *(x.key for x in self.where)]
         columns, errors, not_bodies = records(given, keys, are_bodies=self.is_body)
-        if given.lines is not None:
-            lines = {row: f"line {given.lines[row]}: " for row in errors}
-            errors = {row: Message(lines[row] + marked(errors[row])) for row in errors}
+        if given.places is not None:
+            places = {row: f"{given.places[row]}: " for row in errors}
+            errors = {row: Message(places[row] + marked(errors[row])) for row in errors}
         if "error" in columns:
             columns["error"][[*errors]] = [*map(str, errors.values())]
         first = errors[min(errors)] if errors else ""
