@@ -41,7 +41,8 @@ class Output(NamedTuple):
     @property
     def format(self) -> Format:
         """The format, imported when it is used."""
-        return format_of(self.fmt)
+        found: Format = format_of(self.fmt)
+        return found
 
     def document(self, document: Document) -> None:
         """Write a document.  Raises LagtopError if the format cannot hold it."""

@@ -8,10 +8,7 @@ the help, the pages and the refusal of other names take it.  Its module has a `F
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from .base import Format
+from typing import Any, NamedTuple
 
 
 class Row(NamedTuple):
@@ -36,8 +33,7 @@ PICTURES, FILMS = ("png", "svg", "pdf"), ("gif", "mp4")
 """The extensions of pictures and films, which the plotting package writes."""
 
 
-def format_of(name: str) -> Format:
-    """Return the format with a name, or a form such as `csv.WITH_COMMAS`."""
+def format_of(name: str) -> Any:
+    """Return the `base.Format` with a name, or a form of one such as `csv.WITH_COMMAS`."""
     module, _, form = name.partition(".")
-    found: Format = getattr(import_module(f".{module}", __package__), form or "FORMAT")
-    return found
+    return getattr(import_module(f".{module}", __package__), form or "FORMAT")
