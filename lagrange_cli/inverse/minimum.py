@@ -27,7 +27,7 @@ _SHARE = 0.05
 """Share of a parameter in such a direction from which it is not determined either."""
 SURE = 2.0
 """Standard deviations from which a > 0, and b and r0 have a sign."""
-_APART = 4.0
+APART = 4.0
 """Standard deviations of a or b between different tops, and off a straight valley."""
 _BENT = 2.0
 """Growth of chi^2 over that of a parabola from which the floor of a bent valley is searched."""
@@ -84,14 +84,11 @@ class Minimum:
         return float(np.linalg.norm(self.spread[names.index(name)])) if name in names else 0.0
 
     def differs(self, other: Minimum) -> bool:
-        """Return whether this is another top: in a or b, whose sign changes in a mirror image."""
-        is_image = self.problem.recording.is_mirrored is not other.problem.recording.is_mirrored
-        for name in ("a", "b"):
-            x, y = self.values[name], other.values[name]
-            off = abs(abs(x) - abs(y)) if is_image else abs(x - y)
-            if off > _APART * self.std(name) + 1e-6 * abs(x):
-                return True
-        return False
+        """Return whether another minimum is that of another top, in a or b."""
+        return any(
+            abs(self.values[x] - other.values[x]) > APART * self.std(x) + 1e-6 * abs(self.values[x])
+            for x in ("a", "b")
+        )
 
     def turned(self, turns: float) -> Minimum:
         """Return the minimum with a spin that is faster by whole turns per row."""
@@ -174,7 +171,7 @@ def shaped(found: Minimum) -> Minimum:
         floor, chi2 = descended(rest, ends[bent], 20)
         grown[bent] = chi2 / 4
         stds = np.linalg.norm(found.spread[:2], axis=1) + 1e-300
-        is_aside = bool(np.any(np.abs(floor - ends[bent])[:, :2] / stds > _APART))
+        is_aside = bool(np.any(np.abs(floor - ends[bent])[:, :2] / stds > APART))
     least = grown.reshape(2, -1).min(axis=0, initial=np.inf)
     factors = np.sqrt(1 / np.clip(least, 1e-2, 1))
     is_curved = is_aside or bool(np.any(least > _BROKEN))

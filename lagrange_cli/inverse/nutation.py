@@ -57,14 +57,14 @@ def nutating_outcome(
     *,
     is_spin_known: bool,
     is_even: bool,
-    rival: str = "",
-    assumed: Sequence[str] = (),
+    rivals: Sequence[Reason],
+    assumed: Sequence[str],
     **others: Any,
 ) -> Outcome:
     """Return the result of a fit whose unit of time is `scale` units of the recording.
 
     Without `is_spin_known` nothing follows from r0.  What is `assumed` of the spin comes first in
-    the notes.  A `rival` is another top, in words.  All others are those of `Outcome`.
+    the notes.  `rivals` are other tops.  All others are those of `Outcome`.
     """
     vector, best = found.vector, found.vector.best
     names, motion = best.problem.names, best.problem.angles
@@ -103,7 +103,7 @@ def nutating_outcome(
         motion=lambda t: motion(best.x[np.newaxis, np.newaxis], t / scale)[:, 0, 0],
         parameters=best.x.size - vector.conditions,
         frequency=1 / scale,
-        reasons=_faults(found, rival, is_even=is_even),
+        reasons=[*rivals, *_faults(found, is_even=is_even)],
         notes=[*notes, *found.notes],
         inputs={x: y * scale ** time_power(x) for x, y in inputs.items()},
         arbitrary=arbitrary,
@@ -136,13 +136,10 @@ def _too_small(pairs: Mapping[str, tuple[float, ...]], known: Known) -> list[str
     ]
 
 
-def _faults(found: Comparison, rival: str, *, is_even: bool) -> list[Reason]:
+def _faults(found: Comparison, *, is_even: bool) -> list[Reason]:
     """Return why the top is undetermined or impossible, or contradicts known inputs."""
     best, faults = found.vector.best, [Reason(Kind.KNOWN, x) for x in found.contradictions]
     values = best.values
-    if rival:
-        also = f"another top explains the recording as well: {rival}"
-        faults.append(Reason(Kind.OPEN, also))
     if best.unknown:
         known = [x for x in best.unknown if not x.endswith("_zero")] or best.unknown
         missing = f"the recording does not determine {', '.join(known)}"

@@ -22,9 +22,11 @@ from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
+from .minimum import APART
 from .neighbours import DECAY, LOST, Finding, Neighbours, neighbours_of
 from .reasons import ADVICE, MISFITS, Kind, Reason
 from .rows import repeated
+from .spins import FASTER
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -106,8 +108,8 @@ class Outcome(HasRecord):
     """Correlations of a, b and r0 by pairs such as `a and b`, as far as they are parameters."""
     distances: Mapping[str, float] = field(default_factory=dict)
     """Distances of known inputs from their values in the recording, in standard deviations."""
-    is_spin_slow: bool = True
-    """Whether the spin is slow enough to show the direction of psi."""
+    turns: float = 0.0
+    """Turns per row of a spin that is recorded, but not known."""
     chance: float = CHANCE
     """Probability that noise fails a test."""
 
@@ -157,6 +159,11 @@ class Outcome(HasRecord):
         found += [*self._of_data(), *self._misfits(), *self._of_neighbours()]
         found.sort(key=lambda x: x.kind)
         return [x for x in found if x.kind < Kind.KNOWN] or found
+
+    @property
+    def is_spin_slow(self) -> bool:
+        """Whether the spin is slow enough to show the direction of psi."""
+        return self.turns < 1 / (1 + FASTER)
 
     @property
     def kinds(self) -> set[Kind]:
@@ -322,6 +329,12 @@ class Outcome(HasRecord):
         """Return how much larger -2 log(likelihood) is than that of another fit of these rows."""
         pairs = [(x, other.residuals[y]) for y, x in self.residuals.items() if y in other.residuals]
         return sum(x.y.size * 2 * math.log((x.rms + 1e-12) / (y.rms + 1e-12)) for x, y in pairs)
+
+    def differs(self, other: Outcome) -> bool:
+        """Return whether another fit is that of another top, of whatever direction of psi."""
+        one, two = self.in_radians, other.in_radians
+        pairs = [(one[x], two[x]) for x in ("a", "b") if x in one.keys() & two.keys()]
+        return any(abs(abs(x.value) - abs(y.value)) > APART * x.std for x, y in pairs)
 
     def failure(self) -> str:
         """Return why the fit has failed and what to try, with the name of the recording."""

@@ -21,14 +21,14 @@ from ..errors import DataError, arg
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
 from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
-from .conditions import Comparison, compare, ties_of
+from .conditions import compare, ties_of
 from .known import START, Known, in_all_forms, scaled_known, time_power
 from .measured import ANGLE_OF, LEAST_ROWS, Measured
 from .minimum import MOST_ROWS, SURE, Minimum, converged, largest, minimum_at, slowest
 from .nutation import nutating_outcome
 from .outcome import Outcome
 from .problem import Problem, Ties, problem_of
-from .reasons import Kind
+from .reasons import Kind, Reason
 from .signals import (
     Signal,
     mean_rate,
@@ -39,7 +39,7 @@ from .signals import (
     signals_in,
     step_between,
 )
-from .spins import FASTER, reversed_note
+from .spins import FASTER, aliased_note, reversed_note, unsure_note
 from .starts import best_starts, distinct
 from .steady import steady_outcome
 
@@ -68,9 +68,9 @@ def best_fit(
 ) -> Outcome:
     """Return the fit of one recording, with numbers in some `units`.
 
-    If spin and precession are recorded, psi may count in the other direction.  `chance` is the
-    probability that noise fails a test.  The `frequency` of the nutation is by default that of the
-    harmonics of the recording, which are of a slower one if it is aliased, or if rows are lost.
+    `chance` is the probability that noise fails a test.  The `frequency` of the nutation is by
+    default that of the harmonics of the recording, which are of a slower one if it is aliased, or
+    if rows are lost.
     Raises DataError for a recording that cannot be fitted.
     """
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
@@ -87,9 +87,8 @@ def best_fit(
     outcome = steady_outcome(recording, known, signals, noise, frequency, **asked)
     if not (visible and lasts and outcome.failed):
         return outcome
-    both = recording.kind == "angles" and {"psi", "phi"} <= recording.angles.keys()
     for form, of_form in _forms(recording, signals, noise):
-        found = _nutation(form, known, frequency, of_form, asked, both=both)
+        found = _directed(form, known, frequency, of_form, asked)
         outcome = found or outcome
         if found and not any(x.kind < Kind.KNOWN for x in found.failed):
             break
@@ -137,18 +136,45 @@ def _forms(
     yield recording, noise
 
 
-def _nutation(
-    recording: Measured,
-    known: Known,
-    frequency: float,
-    noise: _Noise,
-    asked: Mapping[str, Any],
-    *,
-    both: bool,
+def _directed(
+    recording: Measured, known: Known, frequency: float, noise: _Noise, asked: Mapping[str, Any]
 ) -> Outcome | None:
-    """Return the best fit of a nutation, with `both` directions of psi; None without a start.
+    """Return the best fit of a nutation, of either direction of psi; None without a start.
 
-    What is `asked` goes into the outcome.
+    The other direction is tried if the fit has failed, or if the spin is so fast that another one
+    looks alike.  It is taken if it explains the recording better, if its spin is much slower, or if
+    it alone agrees with the known inputs.
+    """
+    plain = _nutation(recording, known, frequency, noise, asked)
+    is_sure = recording.kind != "angles" or not {"psi", "phi"} <= recording.angles.keys()
+    if is_sure or not plain or (plain.is_spin_slow and not plain.failed):
+        return plain
+    image = _nutation(recording.mirrored, known, frequency, noise, asked)
+    gain = plain.deviance(image) if image else -math.inf
+    if not image or gain < -_LIKELY:
+        return plain
+    best, other = plain, image
+    if gain > _LIKELY or image.turns * FASTER < plain.turns:
+        best, other = image, plain
+    is_alike = gain < _LIKELY
+    if is_alike and Kind.KNOWN in {x.kind for x in best.reasons}:
+        best, other = other, best
+    notes, reasons = [*best.notes], [*best.reasons]
+    if best is image:
+        notes.insert(0, reversed_note(other.turns * is_alike))
+    elif not best.is_spin_slow:
+        notes.insert(0, unsure_note(other.turns))
+    if is_alike and other.turns < FASTER * best.turns and best.differs(other):
+        reasons.append(_another_top({x: y.value for x, y in other.in_radians.items()}))
+    return replace(best, notes=notes, reasons=reasons)
+
+
+def _nutation(
+    recording: Measured, known: Known, frequency: float, noise: _Noise, asked: Mapping[str, Any]
+) -> Outcome | None:
+    """Return the best fit of a nutation; None without a start.  What is `asked` goes into it.
+
+    Known inputs take part in the search if the recording alone does not determine a top.
     """
     scale, is_alone = 1 / frequency, len(recording.angles) == 1
     scaled = replace(recording, t=recording.t / scale)
@@ -157,51 +183,51 @@ def _nutation(
     start = {x: whole[x] for x in START if whole.has(x)}
     start |= {"r0": whole["r0"]} if "r0" in whole else {}
     floors = np.array([noise[x][0] / math.sqrt(12) + ROUNDING for x in recording.channels])
-    ways = [scaled, scaled.mirrored][: 1 + both]
     for is_tied in [True] if is_alone else [False, True][: 1 + bool(inputs)]:
         ties = ties_of(inputs, None, spins="phi" in recording.angles) if is_tied else None
-        minima = _minima(ways, floors, start if is_tied else {}, ties)
-        best, rival, image = _chosen(minima, turn)
-        if best is None:
+        likely = _likely(_minima(scaled, floors, start if is_tied else {}, ties), turn)
+        if not likely:
             return None
-        given = {} if is_tied else known
-        best, all_rows = _refined(best, floors, turn), recording.t.size
-        if rival and all_rows > MOST_ROWS:
-            level = best.badness(all_rows) + _LIKELY
-            rival = rival if _refined(rival, floors, turn).badness(all_rows) < level else None
-        found = compare(best, given, scale, turn)
-        if image and found.contradictions:
-            other = compare(_refined(image, floors, turn), given, scale, turn)
-            if not other.contradictions:
-                found, image = other, best
-                rival = rival if rival and other.vector.best.differs(rival) else None
+        best, rows = _refined(likely[0], floors, turn), recording.t.size
+        rival = next((x for x in likely if likely[0].differs(x)), None)
+        if rival and rows > MOST_ROWS:
+            rival = _refined(rival, floors, turn)
+            rival = rival if rival.badness(rows) < best.badness(rows) + _LIKELY else None
+        found = compare(best, {} if is_tied else known, scale, turn)
         if not found.vector.best.unknown:
             break
     best = found.vector.best
     if is_tied:
         found.vector.known = {x: y for x, y in inputs.items() if x != "steady"}
-    turns = abs(best.values["r0"]) / turn if turn and best.spins else 0.0
+    sizes = {x: scale ** time_power(x) for x in ["a", "b", *["r0"] * best.spins]}
+    rivals = [_another_top({x: rival.values[x] * y for x, y in sizes.items()})] if rival else []
+    is_seen = "phi" in recording.angles and "r0" not in all_replaced(known)
+    turns = abs(best.values["r0"]) / turn if turn and is_seen else 0.0
     is_sure = abs(best.values["b"]) > SURE * best.std("b")
-    seen = "phi" in recording.angles and "r0" not in all_replaced(known)
     ratio, error = (x / (best.values["r0"] or math.inf) for x in (best.values["b"], best.std("b")))
     if recording.angles.keys() == {"theta", "phi"} and abs(ratio - 1) < 3 * error:
         found.notes.append(
             "C agrees with A, as it would if phi were the precession: if it is, name its column psi"
         )
-    faster = abs(image.values["r0"]) / turn if image and turn else 0.0
     return nutating_outcome(
         found,
-        replace(best.problem.recording, t=recording.t),
+        recording,
         scale,
         noise=noise,
-        is_spin_known=not seen or (is_sure and turns < 0.5),
+        is_spin_known=not is_seen or (is_sure and turns < 0.5),
         is_even=bool(turn),
-        rival=_shown(rival, scale) if rival else "",
+        rivals=rivals,
         known=known,
-        assumed=_assumed(found, faster, turns if seen else 0.0, turn / scale),
-        is_spin_slow=not seen or turns < 1 / (1 + FASTER),
+        assumed=[aliased_note(turn / scale, is_selected=found.is_selected)] * (turns > 0.5),
+        turns=turns,
         **asked,
     )
+
+
+def _another_top(values: Mapping[str, float]) -> Reason:
+    """Return that a top with other values of a, b and r0 explains the recording as well."""
+    shown = ", ".join(f"{x} = {values[x]:.6g}" for x in ("a", "b", "r0") if x in values)
+    return Reason(Kind.OPEN, f"another top explains the recording as well: {shown}")
 
 
 def _refined(best: Minimum, floors: Array, turn: float) -> Minimum:
@@ -213,35 +239,39 @@ def _refined(best: Minimum, floors: Array, turn: float) -> Minimum:
 
 
 def _minima(
-    ways: Sequence[Measured], floors: Array, known: Mapping[str, float], ties: Ties | None
+    recording: Measured, floors: Array, known: Mapping[str, float], ties: Ties | None
 ) -> list[Minimum]:
-    """Return the minima of a recording that are about as good as the best.
-
-    Each way, psi is counted in one direction.  None is refined if no motion of a top matches.
-    """
-    found: list[tuple[float, Problem, Array]] = []
-    each = [signals_in(way) for way in ways]
-    noise = ways[0].sigma or noise_of(each[0], 1.0, ways[0])
-    sizes = np.maximum([noise[x] for x in ways[0].channels], floors)
-    for way, signals in zip(ways, each, strict=True):
-        count = _STARTS["theta" not in way.angles]
-        states, zeros = best_starts(way, signals, sizes, known, count)
-        problem, x = problem_of(way, sizes, states, zeros, ties)
-        if not len(x):
-            continue
-        for rows, steps, gain, kept in _STAGES:
-            few, x = _rephased(problem.thinned(rows), x)
-            x, chi2 = few.solve(x, steps, gain, central=False)
-            best = distinct(x, chi2, kept)
-            problem, x, chi2 = replace(problem, first=few.first[best]), x[best], chi2[best]
-        found += [(y, problem.at(i), x[i : i + 1]) for i, y in enumerate(chi2.tolist())]
-    if not found:
+    """Return minima of a recording.  None is refined if no motion of a top matches."""
+    signals = signals_in(recording)
+    noise = recording.sigma or noise_of(signals, 1.0, recording)
+    sizes = np.maximum([noise[x] for x in recording.channels], floors)
+    count = _STARTS["theta" not in recording.angles]
+    states, zeros = best_starts(recording, signals, sizes, known, count)
+    problem, x = problem_of(recording, sizes, states, zeros, ties)
+    if not len(x):
         return []
-    least, problem, x = min(found, key=lambda y: y[0])
-    few = problem.thinned(_STAGES[-1][0])
-    if largest(few, x) > LARGEST:
-        return [replace(minimum_at(problem, x), is_hopeless=True)]
-    return [converged(y, z, floors) for chi2, y, z in found if chi2 <= _COMPARABLE * least]
+    for rows, steps, gain, kept in _STAGES:
+        few, x = _rephased(problem.thinned(rows), x)
+        x, chi2 = few.solve(x, steps, gain, central=False)
+        best = distinct(x, chi2, kept)
+        problem, x, chi2 = replace(problem, first=few.first[best]), x[best], chi2[best]
+    if not len(x):
+        return []
+    if largest(problem.at(0).thinned(rows), x[:1]) > LARGEST:
+        return [replace(minimum_at(problem.at(0), x[:1]), is_hopeless=True)]
+    ends = np.flatnonzero(chi2 <= _COMPARABLE * chi2[0]).tolist()
+    return [converged(problem.at(i), x[i : i + 1], floors) for i in ends]
+
+
+def _likely(minima: Sequence[Minimum], turn: float) -> list[Minimum]:
+    """Return the minima that explain a recording about as well as the best, which comes first.
+
+    Those that differ by whole turns of the spin per row are alike: each has the slowest spin.
+    """
+    slow = [slowest(x, turn) for x in minima]
+    levels = [x.badness() for x in slow]
+    order = np.argsort(levels).tolist()
+    return [slow[i] for i in order if levels[i] < levels[order[0]] + _LIKELY]
 
 
 def _rephased(problem: Problem, x: Array) -> tuple[Problem, Array]:
@@ -269,55 +299,3 @@ def _widening(found: Minimum, floors: Array) -> Array:
         repeated = math.sqrt(excess) if chance < CHANCE else 1.0  # in each period, by an encoder
         factors.append(max(rest.widening(), repeated))
     return np.array(factors)
-
-
-def _chosen(
-    minima: Sequence[Minimum], turn: float
-) -> tuple[Minimum | None, Minimum | None, Minimum | None]:
-    """Return the best minimum, a rival that is another top, and its mirror image.
-
-    Minima that differ by whole turns of the spin per row are one.  Of two directions of psi that
-    explain the recording as well, the recorded one is taken, unless its spin is much faster.  A
-    mirror image whose a or b has another size is a rival, too, unless its spin is much faster than
-    one that is slow.
-    """
-    slow = [slowest(x, turn) for x in minima]
-    levels = [x.badness() for x in slow]
-    order = [i for i in np.argsort(levels).tolist() if levels[i] < min(levels) + _LIKELY]
-    likely = [slow[i] for i in order]
-    ways = [[x for x in likely if x.problem.recording.is_mirrored is way] for way in (False, True)]
-    plain, turned = (abs(x[0].values["r0"]) if x else math.inf for x in ways)
-    if turned * FASTER < plain:
-        ways.reverse()
-    best, image = (x[0] if x else None for x in ways)
-    slow_spin = min(plain, turned)
-    is_open = 2 * (1 + FASTER) * slow_spin >= turn
-    others = [x for x in ways[1] if is_open or abs(x.values["r0"]) < FASTER * slow_spin]
-    return best, next((x for x in ways[0] + others if best and x.differs(best)), None), image
-
-
-def _shown(rival: Minimum, scale: float) -> str:
-    """Return the numbers of another top in the units of the recording."""
-    names = ["a", "b", *["r0"] * rival.spins]
-    return ", ".join(f"{x} = {rival.values[x] * scale ** time_power(x):.6g}" for x in names)
-
-
-def _assumed(found: Comparison, faster: float, turns: float, turn: float) -> list[str]:
-    """Return what was assumed of the spin and of the direction of psi.
-
-    The spin makes some turns per row, or `faster` ones if psi counts in the other direction.
-    """
-    notes = []
-    if found.vector.best.problem.recording.is_mirrored:
-        notes.append(reversed_note(faster))
-    elif faster and turns > 1 / (1 + FASTER):
-        notes.append(
-            f"psi may count in the other direction, if the spin makes {faster:.2g} turns per row"
-        )
-    if turns > 0.5:
-        how = "rate that C selects" if found.is_selected else "slowest possible rate"
-        notes.append(
-            "the spin exceeds half a turn per row: r0 is known only up to multiples of "
-            f"{turn:.6g}; the {how} is reported"
-        )
-    return notes

@@ -29,3 +29,17 @@ def reversed_note(turns: float) -> str:
     note = "psi counts in the other direction: its sign was changed"
     faster = f" (else the spin makes {turns:.2g} turns per row or more)"
     return note + faster * (0 < turns < math.inf)
+
+
+def unsure_note(turns: float) -> str:
+    """Return a note on psi, whose direction may be the other one with a spin of some turns."""
+    return f"psi may count in the other direction, if the spin makes {turns:.2g} turns per row"
+
+
+def aliased_note(turn: float, *, is_selected: bool) -> str:
+    """Return a note on a spin that is known up to multiples of `turn`, unless C selects it."""
+    how = "rate that C selects" if is_selected else "slowest possible rate"
+    return (
+        "the spin exceeds half a turn per row: r0 is known only up to multiples of "
+        f"{turn:.6g}; the {how} is reported"
+    )

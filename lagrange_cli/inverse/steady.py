@@ -19,7 +19,7 @@ from ..errors import Message, arg
 from ..top.inputs import TILT, all_replaced, replaced_by
 from ..top.units import bare_name
 from .checks import CHANCE, Noise, Residuals
-from .conditions import Vector, compare
+from .conditions import Comparison, Vector, compare
 from .known import START, WEIGHT, Known, body_of
 from .measured import ANGLE_OF, Measured
 from .outcome import Number, Outcome
@@ -43,6 +43,7 @@ _SURE = 4.0
 _KNOWN = 1e-9
 """Standard deviation of b/a over that without known inputs, up to which they alone give it."""
 _Pair = tuple[float, float]
+_MEANS = {"theta": "mean_tilt_rad", "psi": "mean_precession_rate", "phi": "mean_spin_rate"}
 _MEANINGS = {
     "mean_tilt": "mean tilt",
     "mean_precession_rate": "mean precession rate",
@@ -175,26 +176,7 @@ def steady_outcome(
             + "; C and the sign of r0 do not follow" * (not is_sure)
         )
 
-    def computed(at: Array) -> dict[str, Array]:
-        """Return the numbers of the fit."""
-        v, has = found.vector.motion(at), found.vector.body(at)
-        keys = {"theta": "mean_tilt_rad", "psi": "mean_precession_rate", "phi": "mean_spin_rate"}
-        numbers = {y: at[:, i] for i, (x, y) in enumerate(keys.items()) if x in means}
-        numbers |= {"r0": v["r0"]} if is_derived else {}
-        if factor:
-            weight = 2 * math.prod(has[x] for x in "msg" if x in has)
-            unknown = [x for x in "msg" if x not in has]
-            over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
-            numbers["b/a"] = v["b/a"]
-            product = numbers["b/a"] * weight / (v["r0"] if is_sure else 1)
-            numbers[f"C{over}" if is_sure else f"C*r0{over}"] = product
-        return {x: y for x, y in numbers.items() if x not in known}
-
-    numbers = {
-        key: Number(value, std, _MEANINGS.get(bare_name(key), "from the mean rates"), own)
-        for key, (value, std, own) in found.vector.numbers(computed).items()
-        if std > _KNOWN * found.free.get(key, 0.0)
-    }
+    numbers = _numbers(found, means, is_derived=is_derived, is_sure=is_sure, has_ratio=bool(factor))
     spin, turned = (means.get(x, _NONE) for x in ("phi", "psi"))
 
     def motion(t: Array) -> Array:
@@ -218,6 +200,37 @@ def steady_outcome(
     r0 = float(found.vector.here(found.vector.motion)["r0"]) if has_sign else 0.0
     reasons += _faults(recording, turned, r0, result, frequency)
     return replace(result, reasons=reasons)
+
+
+def _numbers(
+    found: Comparison,
+    means: Mapping[str, _Mean],
+    *,
+    is_derived: bool,
+    is_sure: bool,
+    has_ratio: bool,
+) -> dict[str, Number]:
+    """Return the means, r0 if it is derived, and what follows from b/a if this is determined."""
+    vector = found.vector
+
+    def computed(at: Array) -> dict[str, Array]:
+        v, has = vector.motion(at), vector.body(at)
+        numbers = {_MEANS[x]: at[:, i] for i, x in enumerate(_MEANS) if x in means}
+        numbers |= {"r0": v["r0"]} if is_derived else {}
+        if has_ratio:
+            weight = 2 * math.prod(has[x] for x in "msg" if x in has)
+            unknown = [x for x in "msg" if x not in has]
+            over = {0: "", 1: f"/{''.join(unknown)}"}.get(len(unknown), f"/({'*'.join(unknown)})")
+            numbers["b/a"] = v["b/a"]
+            product = numbers["b/a"] * weight / (v["r0"] if is_sure else 1)
+            numbers[f"C{over}" if is_sure else f"C*r0{over}"] = product
+        return {x: y for x, y in numbers.items() if x not in vector.known}
+
+    return {
+        key: Number(value, std, _MEANINGS.get(bare_name(key), "from the mean rates"), own)
+        for key, (value, std, own) in vector.numbers(computed).items()
+        if std > _KNOWN * found.free.get(key, 0.0)
+    }
 
 
 def _factor(vector: Vector, notes: list[str], *, is_sure: bool) -> _Pair | None:
