@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from ..names import Key, check_names
 from ..solver.columns import shown_columns
 from ..solver.facts import Facts
-from ..solver.keys import KEYS, LINES, all_keys, shown_keys
+from ..solver.keys import KEYS, LINES, all_keys, key_of, shown_keys
 from ..solver.record import record_in_range
 from ..solver.solve import Motion
 from ..top.units import DEGREES, Units, bare_name
@@ -84,7 +84,8 @@ def explanations(motion: Motion, names: Sequence[str], units: Units = DEGREES) -
     """
     rows = listed(units)
     known = list(dict.fromkeys(row.name for row in rows))
-    names = [_named_by(word, rows) if word not in known else word for word in names]
+    columns = shown_columns(units).items()
+    names = [key_of(word, units, columns) for word in names]
     check_names("KEY", names, known)
     chosen = [
         row._replace(text=_with_limits(row.text, motion.facts))
@@ -124,12 +125,6 @@ def _with_numbers(motion: Motion, row: Explained, used: Sequence[str]) -> str:
         differences.append(f"{_shown(part, symbols)} = {texts[name]}")
     before = ", " if " where " in shown else " where "
     return before.join([shown, ", ".join(differences)]) if differences else shown
-
-
-def _named_by(symbol: str, rows: Sequence[Explained]) -> str:
-    """Return the key or column with a symbol, if there is only one; else the symbol."""
-    found = [row.name for row in rows if row.symbol == symbol]
-    return found[0] if len(found) == 1 else symbol
 
 
 def _reasons(motion: Motion, absent: Sequence[str]) -> str:

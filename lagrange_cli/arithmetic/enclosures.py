@@ -292,10 +292,10 @@ def _alike(what: str, ball: arb, digits: int | None) -> Any:
 # Decimal numbers
 
 
-_EXACT = own_context(1_000_000, [])
+_EXACT = own_context(1_000_000)
 """More digits than any ball has."""
-_SHORT, _OUTWARDS = own_context(20, []), own_context(20, [], ROUND_UP)
-_TWO_DIGITS = own_context(2, [], ROUND_UP)
+_SHORT, _OUTWARDS = own_context(20), own_context(20, ROUND_UP)
+_TWO_DIGITS = own_context(2, ROUND_UP)
 _A_HAIR_MORE = Decimal("1.000000000001")
 _MORE_DIGITS = f"use {arg('digits', 'N')}"
 
@@ -338,7 +338,7 @@ def rounded(what: str, value: Exact, digits: int | None, remedy: str = "change t
 
 def text_of(value: Exact, digits: int) -> NumberText:
     """Return a number with `digits` significant digits, in full if its size is ordinary."""
-    context = own_context(digits, [])
+    context = own_context(digits)
     found = _decimal(value, context)
     if not found:
         return NumberText("0.0")

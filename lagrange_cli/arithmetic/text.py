@@ -20,11 +20,7 @@ class NumberText(str):
     __slots__ = ()
 
 
-def own_context(
-    digits: int,
-    traps: list[type[decimal.DecimalException]],
-    rounding: str = decimal.ROUND_HALF_EVEN,
-) -> decimal.Context:
+def own_context(digits: int, rounding: str = decimal.ROUND_HALF_EVEN) -> decimal.Context:
     """Return a decimal context that does not depend on the context of the host program."""
     return decimal.Context(
         prec=digits,
@@ -34,7 +30,7 @@ def own_context(
         capitals=0,
         clamp=0,
         flags=[],
-        traps=traps,
+        traps=[],
     )
 
 

@@ -26,13 +26,13 @@ which are finite without torque, and exactly 0 if two roots coincide:
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from typing import Any
 
 from ..names import Key
 from ..top.derived import FAST, SLOW
-from ..top.inputs import DECLARED, FORMS, NINE, TILT
+from ..top.inputs import DECLARED, FORMS, NINE, TILT, declared
 from ..top.units import DEGREES, Units, bare_name
 
 _TEXT = """
@@ -225,20 +225,13 @@ A test returns a bool for one motion, or an array of them (a mask) for many.
 """
 
 
-def _cells(line: str) -> list[str]:
-    """Return the eight cells of a line; the last two may be absent, and `|r0|` is a size."""
-    cells = re.split(r"(?<!\S)\|(?!\S)", line)
-    return cells + [""] * (8 - len(cells))
-
-
 def _read(table: str) -> Iterator[tuple[str, Key]]:
     group = common = ""
-    for text in table.strip().replace("\n ", " ").splitlines():
-        if text.startswith("# "):
-            group, _, common = text[2:].partition(" | ")
+    for name, *cells in declared(table):
+        if name.startswith("# "):
+            group, common = name[2:], "".join(cells)
             continue
-        name, *words, formula, only, lacking = map(str.strip, _cells(text))
-        symbol, meaning, unit, equation = words
+        symbol, meaning, unit, equation, formula, only, lacking = [*cells, "", ""][:7]
         printed, _, evaluated = map(str.strip, formula.partition("~"))
         evaluated = evaluated or printed.partition(" where ")[0]
         cosine = "1" if unit == "cos" else ""
@@ -319,17 +312,15 @@ KEYS = (
 """The declaration of each key of a record by name, in the order of the groups of a table."""
 
 
-def key_of(word: str, units: Units = DEGREES) -> str:
-    """Return the key that a symbol stands for, if it stands for one only; else the word itself.
+def key_of(word: str, units: Units, columns: Iterable[tuple[str, Key]] = ()) -> str:
+    """Return the key or column that a symbol stands for, if only one; else the word itself.
 
     The key of an uncertainty, such as `T_std`, is that of its number with `_std`.
     """
     symbol, std, _ = word.partition("_std")
-    named = [
-        name for name, key in (INPUT_KEYS | NUMBERS).items() if symbol and key.symbol == symbol
-    ]
-    is_key = units.key(symbol) in all_keys(units)
-    return word if is_key or len(named) != 1 else units.key(named[0]) + std
+    known = shown_keys(units, requested=True) | dict(columns)
+    named = [name for name, key in known.items() if symbol and key.symbol == symbol]
+    return word if symbol in known or len(named) != 1 else named[0] + std
 
 
 def record_keys(units: Units = DEGREES) -> list[str]:

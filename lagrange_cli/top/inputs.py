@@ -74,9 +74,12 @@ psidot0 | ψ'0 | precession rate at the start
 
 
 def declared(table: str) -> Iterator[list[str]]:
-    """Yield the cells of a table, one row per line; indented lines continue the line before."""
+    """Yield the cells of a table, one row per line; indented lines continue the line before.
+
+    A stroke without a blank on both sides, as in `|r0|`, separates no cells.
+    """
     for line in re.sub("\n +", " ", table.strip()).split("\n"):
-        yield [cell.strip() for cell in line.split("|")]
+        yield [cell.strip() for cell in re.split(r"(?<!\S)\|(?!\S)", line)]
 
 
 STEADY_WORDS = ("steady", "steady-fast")

@@ -115,7 +115,7 @@ class LogPoints(Points):
         import numpy as np
 
         distinct, where = np.unique(index, return_inverse=True)
-        with localcontext(own_context(30, [])):
+        with localcontext(own_context(30)):
             first, last = (x.numerator / Decimal(x.denominator) for x in (self.first, self.last))
             growth = (last / first).ln() / max(self.count - 1, 1)
             values = [float(first * (growth * i).exp()) for i in distinct.tolist()]

@@ -22,11 +22,8 @@ from ...top.given import read_scene
 from ...top.inputs import DECLARED
 from ...top.scenes import scene_names
 
-SHOWN = (
-    "a b u1 u2 u3 k T_nutation T_spin T_precession theta_min_deg theta_max_deg mean_spin_rate "
-    "mean_precession_rate stability_factor r0_sleeping"
-).split()
-"""The keys of the record that `motion.js` computes."""
+_SHOWN = "symbol", "meaning", "unit"
+"""What the page shows of a key."""
 
 
 def view(motion: Motion, unit: Callable[[str], str] = str) -> WebPage:
@@ -57,14 +54,14 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> dict[str, Any]:
     """Return the constant DATA of the page."""
     scene = page_scene(motion)
     inputs = {name: DECLARED[name.removesuffix("_deg")] for name in motion.top.inputs()}
-    units = {x.unit for x in inputs.values()} | {NUMBERS[x].unit for x in SHOWN}
+    units = {x.unit for x in inputs.values()} | {x.unit for x in NUMBERS.values()}
     return {
         "scene": scene,
         "scenes": {name: page_scene(solve(read_scene(name))) for name in scene_names()},
         "units": {x: unit(x) for x in sorted(units)},
         "phrases": PHRASES,
         "inputs": {name: x._asdict() for name, x in inputs.items()},
-        "keys": {x: NUMBERS[x]._asdict() for x in SHOWN},
+        "keys": {x: {z: getattr(y, z) for z in _SHOWN} for x, y in NUMBERS.items()},
     }
 
 
