@@ -81,12 +81,14 @@ def decoded(content: bytes, name: str) -> str:
 
     Raises DataError for other bytes and for NUL, with their line.
     """
+    wrong = "it is not text but a workbook, an archive or binary data: save it as CSV"
     if content.startswith(_BINARY):
-        wrong = "it is not text but a workbook, an archive or binary data: save it as CSV"
         raise DataError(f"{name}: {wrong}")
     try:
         text = content.decode("utf-16" if content[:2] in _UTF16 else "utf-8-sig")
     except UnicodeDecodeError as error:
+        if b"\0" in content and content[:2] not in _UTF16:
+            raise DataError(f"{name}: {wrong}") from None
         line = content.count(b"\n", 0, error.start) + 1
         wrong = "the text must be UTF-8 or UTF-16: save the file as UTF-8"
         raise DataError(f"{name}, line {line}: {wrong}") from None
