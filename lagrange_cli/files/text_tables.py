@@ -21,6 +21,7 @@ import numpy as np
 from ..arithmetic.text import parse_number, quoted, shortened
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError, arg
+from ..top.units import is_unit
 from .json_rows import MOST_CELLS, entries_of, json_value, rows_of_value, shown
 
 _SAMPLE = 1000
@@ -289,6 +290,13 @@ def read_table(
             split_row(line, delimiter)
         except LagtopError as error:
             raise DataError.at(f"{name}, line {number}", error) from None
+    if (
+        headings
+        and not width
+        and (units := _units_in(sample[first:][:1], delimiter, len(headings)))
+    ):
+        pairs, first = zip(headings, units, strict=True), first + 1
+        headings = [f"{name} [{unit}]" if unit else name for name, unit in pairs]
     rows = sample[first:]
     cells = _split(rows[0][1], delimiter) if rows else []
     count = len(cells if width else headings or cells)
@@ -374,6 +382,14 @@ def _layout(
         _, headings, first, delimiter = best
         return headings, first, delimiter
     return _split(head[first - 1], delimiter) if first else None, first, delimiter
+
+
+def _units_in(rows: Sequence[tuple[int, str]], delimiter: str, count: int) -> list[str]:
+    """Return the units in a row below headings, empty for a column without; none in other rows."""
+    cells = [x.strip("()[]") for _, text in rows for x in _split(text, delimiter)]
+    units = ["" if x == "-" else x for x in cells]
+    is_row = len(units) == count and any(units) and all(is_unit(x) for x in units if x)
+    return units if is_row else []
 
 
 def _first_row(

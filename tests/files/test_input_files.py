@@ -135,6 +135,15 @@ def test_forms_of_json(content: Any, lagtop: Lagtop) -> None:
     assert swept.stdout.splitlines()[1:] == ["a,50.0,10.0,", "b,50.0,20.0,"]
 
 
+def test_units_in_a_row_below_the_headings(lagtop: Lagtop) -> None:
+    """Cells without a unit are empty or -; a row with another word is no such row."""
+    for text in ("id;r0;theta0\n;rpm;deg\n1;300;30\n", "id r0 theta0\n- [rpm] [rad]\n1 300 0.5\n"):
+        done = lagtop("sweep", "-", "--keys", "r0,theta0_deg", input=text)
+        tilt = 30.0 if "deg" in text else math.degrees(0.5)
+        assert done.stdout.splitlines()[1] == f"1,{10 * math.pi},{tilt},"
+    assert lagtop("compare", "-", input="t,theta\ns,soon\n0,30\n1,31\n").exit_code == 65
+
+
 def test_rows_of_json_are_as_long_as_their_names(lagtop: Lagtop) -> None:
     for names, said in (("r0", "row 1: a row must have 1 cells"), ("r0 r0", "each column once")):
         text = json.dumps({"columns": names.split(), "data": [[1, 2]]})
