@@ -47,6 +47,7 @@ _WITH_UNIT = re.compile(rf"{_DIGITS}(?:\s+[^\W\d_].*|\s*°)")
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\[\]]*\]|\([^()]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
+_PLAIN = dict.fromkeys(map(ord, "()[]"))
 EXPONENT = str.maketrans("dD", "ee")
 _FORTRAN = re.compile(r"(?<=[\d.])D(?=[+-]?\d)")
 _MISSING = {None, "", "NA", "N/A", "#N/A", "NULL", "null", "None", "-"}
@@ -386,8 +387,8 @@ def _layout(
 
 def _units_in(rows: Sequence[tuple[int, str]], delimiter: str, count: int) -> list[str]:
     """Return the units in a row below headings, empty for a column without; none in other rows."""
-    cells = [x.strip("()[]") for _, text in rows for x in _split(text, delimiter)]
-    units = ["" if x == "-" else x for x in cells]
+    texts = (x.translate(_PLAIN) for _, x in rows)
+    units = ["" if x == "-" else x for text in texts for x in _split(text, delimiter)]
     is_row = len(units) == count and any(units) and all(is_unit(x) for x in units if x)
     return units if is_row else []
 
