@@ -83,6 +83,11 @@ class Residuals:
         return float(np.sqrt(np.mean(self.y**2)))
 
     @property
+    def is_white(self) -> bool:
+        """Whether they are as small as the noise of neighbours, and do not correlate with them."""
+        return self.rms <= _AS_NOISY * self.neighbours and self.widening() == 1
+
+    @property
     def is_coarse(self) -> bool:
         """Whether the steps of an encoder explain the residuals."""
         return float(np.quantile(np.abs(self.y), 0.95)) <= _WITHIN * self.step

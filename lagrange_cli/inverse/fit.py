@@ -34,12 +34,14 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     Raises DataError for a recording that cannot be fitted.
     """
     outcome, again = best_fit(recording, known, units=units), 0
-    if {Kind.OPEN, Kind.MOTION} & outcome.kinds:
-        frequency = frequency_of_parts(recording)
+    for kinds in ({Kind.OPEN, Kind.MOTION}, {Kind.MOTION}):
+        if not kinds & outcome.kinds:
+            break
+        is_open = Kind.OPEN in kinds  # else a half of the frequency may have been found
+        frequency = frequency_of_parts(recording) if is_open else 2 * outcome.frequency
         if frequency and abs(math.log(frequency / outcome.frequency)) > _OTHER:
-            other, again = best_fit(recording, known, units=units, frequency=frequency), 1
-            if not other.is_open:
-                outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
+            other, again = best_fit(recording, known, units=units, frequency=frequency), again + 1
+            outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
     advice = Advice(recording, known, outcome, again)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:

@@ -232,6 +232,8 @@ class Finding:
         is_possible = size < most and (self.size > 0 or not self.one.is_positive)
         if self.one.name == LOST:
             is_possible = size > 0.5 and abs(size - round(size)) < max(3 * self.std, 0.1)
+        if self.one.is_square and math.sqrt(size) * self.fit.period > self.fit.recording.frame:
+            is_possible &= not all(x.is_white for x in self.rests)  # it smooths the noise, too
         is_far = any(x.is_large or x.outliers.any() for x in self.rests)
         explains = not is_far or self.chi2 * _EXPLAINS < self.fit.chi2
         return is_possible and explains and math.isfinite(self.std)

@@ -15,12 +15,12 @@ class Kind(IntEnum):
     """The origin of a marker is not the pivot, or a quaternion has no length of 1."""
     ROWS = auto()
     """Rows are repeated or lost."""
-    OPEN = auto()
-    """The recording determines no top, or several."""
     IMPOSSIBLE = auto()
     """The numbers are those of no rigid body, or of no steady precession."""
     MACHINE = auto()
     """Another machine, or a fault of camera, clock or angles, explains the residuals."""
+    OPEN = auto()
+    """The recording determines no top, or several."""
     MOTION = auto()
     """No motion of a top is near the recording."""
     OUTLIER = auto()
