@@ -71,11 +71,11 @@ def bench_command(
     from ..bench.work_precision import PERIODS, bench, methods_figure
     from ..file_bytes import shown_path
 
-    if points and not plot:
+    if points is not None and not plot:
         raise LagtopError("--points needs --plot FILE.svg")
-    if points and len(spans or [PERIODS]) > 1:
+    if points is not None and len(spans or [PERIODS]) > 1:
         raise LagtopError("--points needs one span: the picture of several shows no cost")
-    cost, others = read_points(points) if points else ("ns_per_sample", [])
+    cost, others = ("ns_per_sample", []) if points is None else read_points(points)
     scenes = words or ([] if top.inputs else ["chrapan-1952"])
     founds = {one_line(shown_path(x)): top._replace(scene=x).given() for x in scenes}
     founds = founds or {"inputs": top.given()}

@@ -99,7 +99,7 @@ def plot_command(
         raise LagtopError("nothing to do: give -o FILE.png or --animate FILE.gif")
     if duration is not None and animate is None:
         raise LagtopError("--duration needs --animate FILE.gif")
-    if (key or x or y) and "map" not in kinds:
+    if {key, x, y} != {None} and "map" not in kinds:
         raise LagtopError(f"--key, --x and --y need map, got {', '.join(kinds)}")
     if animate and len(scenes) > 1:
         raise LagtopError(f"--animate films one scene, got {', '.join(scenes)}")
@@ -110,8 +110,8 @@ def plot_command(
     if extension(output or "") in FILMS:
         raise LagtopError(f"a film needs --animate: write --animate {output} instead of -o")
     fmt = "svg" if output in (None, "-") else check_picture(output, PICTURES)
-    film = check_picture(animate, FILMS) if animate else ""
-    eye = _camera(camera, Units(top.radians)) if camera else None
+    film = "" if animate is None else check_picture(animate, FILMS)
+    eye = None if camera is None else _camera(camera, Units(top.radians))
     require_matplotlib()  # also for standard output, which has no name to check
     from ..plot.film import SECONDS, film_bytes
     from ..plot.pictures import Options, angle_columns, figure_of
@@ -229,7 +229,7 @@ def view_command(top: opt.TopOptions, opens: bool, output: str | None) -> None:
 
     found = top.given()
     page = view(opt.motion_of(found, uses_stds=False), found.units(radians=False).named)
-    if output:
+    if output is not None:
         with opened(output) as stream:
             stream.write(page.encode())
     if opens:

@@ -79,7 +79,10 @@ def table_command(
     stds: ColumnSpread | None = None
     bounds = {name: x.number for name, x in given.items() if x is not None}
     try:
-        at = read_times(times, decimal) if times else grid(motion, n=n, **bounds, exact=exact)
+        if times is None:
+            at: Any = grid(motion, n=n, **bounds, exact=exact)
+        else:
+            at = read_times(times, decimal)
         if proved:
             header, parts = ProvedTable(motion, names, digits, **how).rows(at, radii=certify)
         else:

@@ -367,7 +367,7 @@ def map(motion: Motion, axes: Sequence[Axes], options: Options) -> str:
     Raises LagtopError for an unknown key, for wrong axes, and if the key has no value anywhere.
     """
     (ax,), look = axes, options.look
-    key = DEGREES.key(options.key or "mean_precession_rate")
+    key = DEGREES.key("mean_precession_rate" if options.key is None else options.key)
     check_names("key", [key], [*WORDS, *NUMBERS])
     grid = grid_of(motion, options)
     tilt = options.units.key("theta0_deg")
