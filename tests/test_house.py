@@ -44,7 +44,7 @@ distributed | sweeps.workers
 arithmetic.formulas.evaluated
     | solver.numbers solver.columns sweeps.numbers top.forms account.worked
 solver.columns.Columns | solver.sampling solver.tables
-top.units.conversion | top.values files.tops recordings.quantities
+top.units.conversion | top.given top.values files.tops recordings.quantities
 top.units.UNITS | recordings.clocks recordings.reading
 account.spread.Spread | account.uncertain
 files.tables.table_in | files.tops recordings.reading recordings.times bench.points

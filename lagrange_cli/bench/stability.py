@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ..names import check_names
 from ..output.report import Report
-from ..output.terminal import Progress, silent
+from ..output.terminal import with_progress
 from ..plot.style import LIGHT
 from ..solver.solve import Motion, solve
 from ..top.top import Top
@@ -56,19 +56,14 @@ FIXED: dict[str, list[dict[str, float]]] = {
 SHOWN = "scene method setting periods error_rad input_rounding verdict inputs remark"
 
 
-def stability(
-    kinds: Sequence[str] | None = None,
-    samples: int = 1,
-    seed: int = 1952,
-    progress: Progress = silent,
-) -> Report:
+def stability(kinds: Sequence[str] | None = None, samples: int = 1, seed: int = 1952) -> Report:
     """Compare methods in the fixed scenes of each kind and in `samples` random ones.
 
     Each method runs at its tightest setting.  Raises LagtopError for an unknown kind.
     """
     names = list(FIXED) if kinds is None else check_names("kinds", kinds, FIXED)
     scenes = [(kind, x) for kind in names for x in motions(kind, samples, seed)]
-    rows = [row for kind, motion in progress(scenes, "scenes") for row in compared(kind, motion)]
+    rows = [row for x in with_progress(scenes, "scenes") for row in compared(*x)]
     found = [
         max((x for x in rows if (x.scene, x.periods, x.method) == case), key=badness)
         for case in product(names, SPANS, COMPARED)

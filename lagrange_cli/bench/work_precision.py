@@ -11,7 +11,7 @@ import numpy as np
 
 from ..names import check_names
 from ..output.report import Report
-from ..output.terminal import Progress, silent
+from ..output.terminal import with_progress
 from ..plot.style import LIGHT, plain
 from ..solver.solve import Motion
 from .measure import ERROR, RUNS, SLOW, Row, Task, looks, measure, panels_of, report_of, task_of
@@ -35,7 +35,6 @@ def bench(
     methods: Sequence[str] | None = None,
     spans: Sequence[float] = (PERIODS,),
     count: int = 10_000,
-    progress: Progress = silent,
 ) -> Report:
     """Compare methods at `count` times over spans in nutation periods.
 
@@ -46,7 +45,7 @@ def bench(
     tasks = [task_of(scene, x, span, count) for scene, x in scenes.items() for span in spans]
     first = 0 if len(spans) == 1 else -1
     runs = [(x, name, y) for x in tasks for name in names for y in METHODS[name].settings[first:]]
-    found = [measure(*run) for run in progress(runs, "methods")]
+    found = [measure(*run) for run in with_progress(runs, "methods")]
     each = len(found) // len(tasks)
     rows = [row for i in range(0, len(found), each) for row in marked(found[i : i + each])]
     said, checked = conclusions(rows, len(spans) > 1), len(tasks[0].exact)

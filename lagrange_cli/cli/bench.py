@@ -6,7 +6,7 @@ import os
 
 from ..errors import LagtopError
 from ..output.destination import Output
-from ..output.terminal import one_line, with_progress
+from ..output.terminal import one_line
 from . import shared as opt
 
 MOST_TIMES, MOST_SCENES, MOST_PERIODS = 10_000_000, 1000, 1e6
@@ -82,7 +82,7 @@ def bench_command(
     motions = {name: opt.motion_of(found) for name, found in founds.items()}
     opt.write_report(
         out,
-        lambda: bench(motions, methods, sorted({*(spans or [PERIODS])}), n, with_progress),
+        lambda: bench(motions, methods, sorted({*(spans or [PERIODS])}), n),
         plot,
         lambda report: methods_figure(report, cost, others),
     )
@@ -115,7 +115,5 @@ def stability_command(
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     from ..bench.stability import failures, stability, stability_figure
 
-    report = opt.write_report(
-        out, lambda: stability(kinds, samples, seed, with_progress), plot, stability_figure
-    )
+    report = opt.write_report(out, lambda: stability(kinds, samples, seed), plot, stability_figure)
     opt.fail_for(failures(report), len(report.rows), "rows")

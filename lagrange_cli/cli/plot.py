@@ -12,7 +12,7 @@ from ..file_bytes import extension
 from ..names import listed, suggestion
 from ..output.destination import opened
 from ..output.formats import FILMS, PICTURES
-from ..output.terminal import is_screen, with_progress
+from ..output.terminal import is_screen
 from ..plot import CAPTION, KINDS, SHEET
 from ..plot.style import (
     DARK,
@@ -129,7 +129,6 @@ def plot_command(
         camera=eye,
         look=DARK if dark else LIGHT,
         key=key,
-        progress=with_progress,
         stds=stds,
         x=_points(axes["x"]),
         y=_points(axes["y"]),

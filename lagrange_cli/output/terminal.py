@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from time import monotonic
-from typing import Any, TextIO, TypeVar
+from typing import TextIO, TypeVar
 
 Item = TypeVar("Item")
 MOST_CHARACTERS = 1000
@@ -53,15 +53,6 @@ def width_of(path: str) -> int | None:
     from shutil import get_terminal_size
 
     return get_terminal_size().columns
-
-
-Progress = Callable[..., Iterator[Any]]
-"""A function with the arguments of `with_progress`, which shows the progress of some work."""
-
-
-def silent(parts: Iterable[Item], *_: Any, **__: Any) -> Iterator[Item]:
-    """Yield the parts and show nothing."""
-    return iter(parts)
 
 
 def with_progress(

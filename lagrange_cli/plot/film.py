@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from ..arithmetic.rotations import rotated
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
+from ..output.terminal import with_progress
 from ..solver.solve import Motion
 from .pictures import Options, camera_of, draw_globe, last_time, project, sampled, scale
 from .style import drawing
@@ -38,7 +39,7 @@ def film_bytes(motion: Motion, suffix: str, options: Options, seconds: float, dp
     frames = round(PER_SECOND * seconds)
     with drawing(options.look), tempfile.TemporaryDirectory() as folder:
         figure, show = film_figure(motion, options, frames)
-        numbers = options.progress(range(frames), "frames")
+        numbers = with_progress(range(frames), "frames")
         film = animation.FuncAnimation(
             figure, show, numbers, save_count=frames, cache_frame_data=False
         )

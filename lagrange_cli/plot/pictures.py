@@ -24,10 +24,10 @@ from ..arithmetic.numbers import Real
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..names import check_names
-from ..output.terminal import Progress, silent
 from ..solver.facts import Regime
-from ..solver.keys import NUMBERS, all_keys, shown_keys
+from ..solver.keys import KEYS, NUMBERS, all_keys, shown_keys
 from ..solver.solve import Motion
+from ..sweeps.conditions import WORDS
 from ..sweeps.records import sweep
 from ..top.inputs import DECLARED, NINE
 from ..top.units import DEGREES, Units
@@ -35,8 +35,6 @@ from .style import LIGHT, Look, plain
 
 MOST_PERIODS, SAMPLES_PER_PERIOD = 1000, 200
 """Of the nutation; more periods would be a blot and not a curve."""
-WORDS = {"regime": "Regime of the motion", "path": "Path of the axis"}
-"""Keys of a map whose values are words, with their titles."""
 COLOURS_OF_WORDS = "#9cc9ec #f3c69a #a9dcc3 #d9c3ea #f0e08c #e8a9a4 #c9ced4 #c8e6a0".split()
 MOST_MAP_VALUES = 1000
 WINDOW = np.array([1.35, 1.0])
@@ -58,7 +56,6 @@ class Options(NamedTuple):
     x: tuple[str, ArrayLike] | None = None
     """Input along the horizontal axis of a map, and its values."""
     y: tuple[str, ArrayLike] | None = None
-    progress: Progress = silent
     whole: bool = False
     """Show whole spheres, which have the same scale, instead of the parts around the paths."""
 
@@ -432,7 +429,7 @@ def draw_words(ax: Axes, grid: Any, values: Any, key: str, _: Options) -> str:
     ax.pcolormesh(*grid, classes.reshape(values.shape), cmap=colours, rasterized=True)
     for colour, name in zip(COLOURS_OF_WORDS, names, strict=False):
         ax.plot([], [], "s", color=colour, label=name.replace("None", "undefined"))
-    return WORDS[key]
+    return KEYS[key].meaning.capitalize()
 
 
 def draw_numbers(ax: Axes, grid: Any, values: Any, key: str, options: Options) -> str:

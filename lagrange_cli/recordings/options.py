@@ -13,17 +13,6 @@ from ..errors import LagtopError, arg
 from ..top.inputs import checked_double
 from ..top.units import DEGREES, Units
 
-WORDS = {
-    "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
-    "up=y": "up is the y axis of space (or x, -x, -y, -z)",
-    "left": "both frames are left-handed; the figure axis is then the axis of `up`, unless given",
-    "conjugate": "the attitude is given from space to body",
-    "start": "spin and precession are 0 in the first row (compare only)",
-    "time": "the first row is at time 0",
-}
-"""The words of an alignment, with their meanings."""
-
-
 OPTION_OF = {"quaternion": "quaternion_order", "euler": "euler_sequence", "rates": "rates_frame"}
 """The option for the convention of a quantity."""
 
@@ -34,9 +23,13 @@ class Alignment(NamedTuple):
     axis: str = "z"
     up: str = "z"
     left: bool = False
+    """Both frames are left-handed; the figure axis is then the axis of `up`, unless given."""
     conjugate: bool = False
+    """The attitude is given from space to body."""
     start: bool = False
+    """Spin and precession are 0 in the first row (compare only)."""
     time: bool = False
+    """The first row is at time 0."""
 
     @classmethod
     def of(cls, words: str | Sequence[str]) -> Alignment:
@@ -47,8 +40,8 @@ class Alignment(NamedTuple):
         found: dict[str, Any] = {}
         for word in filter(None, words.split(",")) if isinstance(words, str) else words:
             if not re.fullmatch("(axis|up)=-?[xyz]|left|conjugate|start|time", str(word).strip()):
-                wanted = f"align must be one of {', '.join(WORDS)}"
-                raise LagtopError(f"{wanted}, got {quoted(word)}", "align")
+                wanted = "one of axis=y, up=y, left, conjugate, start, time"
+                raise LagtopError(f"align must be {wanted}, got {quoted(word)}", "align")
             key, _, axis = str(word).strip().partition("=")
             found[key] = axis or True
         if "left" in found:

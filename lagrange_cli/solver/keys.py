@@ -175,6 +175,9 @@ precession_rate_elementary | ψ' elementary | precession rate of a fast top | ra
 T_nutation_elementary | T elementary | nutation period of a fast top | time | 2πA/(C r0)
    | 2*pi*A/(C*abs(r0)) | if r0 is not 0
 # where
+u0 | | cosine of the tilt at the start | cos | | cos(theta0)
+momentum | | beta - b u0 | | (4,7) | psidot0*sin(theta0)**2
+m_k | | square of the modulus | | (4,19) | a*height/wide
 P | | mean of (β - b)/(1 - u), times K | | (3,8)
    | (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2) ~ pole_integral(-1)
 Q | | mean of (β + b)/(1 + u), times K | | (3,8)

@@ -81,8 +81,6 @@ FUNCTIONS: dict[str, Any] = {
 }
 """The functions of formulas."""
 _FORMULAS = {
-    "u0": "cos(theta0)",
-    "momentum": "psidot0*sin(theta0)**2",  # beta - b u0 (4,7)
     "beta_minus_b": "momentum_constant - b",
     "beta_plus_b": "momentum_constant + b",
     "roots_sum_a": "energy_constant + b**2",  # a (u1 + u2 + u3), by the coefficients of the cubic
@@ -96,7 +94,6 @@ _FORMULAS = {
     "wide": "roots_sum_a - a*(u1 + 2*u2)",  # a (u3 - u2)
     "narrow": "roots_sum_a - a*(2*u1 + u2)",  # a (u3 - u1)
     "far": "wide - a*fall",  # a (u3 - u0)
-    "m_k": "a*height/wide",  # k^2 (4,19)
 }
 """Numbers that the formulas of `keys` use, and their formulas."""
 _ZEROS: dict[str, Callable[[Facts], bool]] = {

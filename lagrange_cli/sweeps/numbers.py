@@ -130,15 +130,12 @@ _START = frozenset(
 
 
 _FORMULAS = {
-    "u0": "cos(theta0)",
-    "momentum": "psidot0*sin(theta0)**2",  # beta - b u0 (4,5)
     "beta_minus_b": "momentum - b*above_u0",
     "beta_plus_b": "momentum + b*below_u0",
     "over_fast": f"b**2 - {FAST}*a",  # not negative in a pseudo-regular precession
     "square_of_steady": "b**2 - 2*a*u0",  # negative if there is no steady precession
     "height": "rise + fall",
     "wide": "far + a*fall",
-    "m_k": "a*height/wide",
     "swing": "thetadot0**2",
     "over": "swing - a*above_u0",
 }

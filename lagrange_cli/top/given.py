@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Mapping
+from fractions import Fraction
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,7 +12,7 @@ from ..arithmetic.numbers import Real
 from ..errors import LagtopError, check_type
 from .inputs import (
     BODY,
-    BODY_IN_SI,
+    BODY_UNITS,
     DECLARED,
     FORMS,
     STEADY_WORDS,
@@ -24,7 +25,7 @@ from .inputs import (
 )
 from .ranges import Points
 from .top import Top
-from .units import EXAMPLES, Units
+from .units import EXAMPLES, Units, conversion
 from .values import Value, tilt_key, values_of
 
 if TYPE_CHECKING:
@@ -65,7 +66,8 @@ class Given(NamedTuple):
     @property
     def body(self) -> Mapping[str, Real]:
         """The body of the worked example, in SI or CGS."""
-        return BODY_IN_SI if self.si else BODY
+        in_si = {x: Fraction(y) * conversion(x, BODY_UNITS[x])[0] for x, y in BODY.items()}
+        return in_si if self.si else BODY
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.

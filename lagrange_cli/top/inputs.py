@@ -105,8 +105,6 @@ INPUTS = (*EXAMPLE, *(key for key in FORMS if key not in EXAMPLE))
 """The keys of all inputs of a top, the forms last."""
 BODY = {name: EXAMPLE[name] for name in ("m", "A", "C", "s", "g")}
 BODY_UNITS = {"m": "g", "A": "g*cm^2", "C": "g*cm^2", "s": "cm", "g": "cm/s^2"}
-_POWERS = {"m": 3, "A": 7, "C": 7, "s": 2, "g": 2}
-BODY_IN_SI = {name: Fraction(x) / 10 ** _POWERS[name] for name, x in BODY.items()}
 
 
 def replaced_by(key: str) -> str:
