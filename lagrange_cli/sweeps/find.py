@@ -221,6 +221,7 @@ def _at(search: Search, point: Sequence[float]) -> str:
     return ", ".join(f"{name} = {x:.6g}" for name, x in zip(search.spans, point, strict=True))
 
 
+@np.errstate(over="ignore")  # infinitely far in tiny spreads
 def _distances(search: Search, off: Array) -> tuple[Array, Array]:
     """Return the spread of each number in a scan, and the distances of tops in these spreads."""
     size = np.maximum(np.abs([*search.targets.values()]), 1e-300)
