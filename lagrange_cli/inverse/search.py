@@ -157,7 +157,8 @@ def _directed(
     if gain > _LIKELY or image.turns * FASTER < plain.turns:
         best, other = image, plain
     is_alike = gain < _LIKELY
-    if is_alike and Kind.KNOWN in {x.kind for x in best.reasons}:
+    kinds, of_other = ({x.kind for x in y.reasons} for y in (best, other))
+    if is_alike and Kind.KNOWN in kinds and not of_other & {Kind.KNOWN, Kind.IMPOSSIBLE}:
         best, other = other, best
     notes, reasons = [*best.notes], [*best.reasons]
     if best is image:
