@@ -212,7 +212,7 @@ def _option_meant(error: click.NoSuchOption) -> str:
     name = error.option_name.lstrip("-")
     if error.ctx and error.ctx.parent is None and name in DECLARED:
         return f": put a command in front of it, as in lagtop solve --{name}"
-    word = {"omega": "spin"}.get(name.lower(), name.lower())
+    word = re.sub("^(i[123xyz]*|inertia)$", "moment", name.lower()).replace("omega", "spin")
     named = [f"--{key.replace('_', '-')}" for key, x in DECLARED.items() if word in x.name.split()]
     named += {"get": ["--keys"], "keys": ["--get"]}.get(word, [])
     if found := [x for x in named if x in known]:

@@ -161,11 +161,11 @@ def power_of_time(unit: str) -> int:
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a unit."""
+    """Return whether a text is a unit, or one that needs another name, such as Hz."""
     try:
         return bool(unit_of_text(text))
     except LagtopError:
-        return False
+        return text in _ASKED
 
 
 def _meant(name: str, text: str) -> str:
