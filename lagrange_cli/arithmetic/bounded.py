@@ -180,8 +180,6 @@ def known(x: Bounded, relative: float, *, positive: bool = True) -> Bounded:
     By default, none is negative.
     """
     x.positive = positive
-    if x.relative is not None and x.relative <= relative:
-        return x
     fine = x.error <= relative * x.size
     value = x.value if fine.all() else choose(fine, x, Bounded(np.nan)).value
     return Bounded(value, None, relative, positive=positive)

@@ -40,14 +40,14 @@ MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 class Parsed(click.ParamType):  # type: ignore[type-arg]
     """A parameter type whose value a function parses; errors begin with the option's name."""
 
-    def __init__(self, metavar: str, parse: Callable[..., Any], *, keyed: bool = False) -> None:
-        """Take a function of the text or, if `keyed`, of the name of the parameter and the text."""
-        self.name, self.parse, self.keyed = metavar, parse, keyed
+    def __init__(self, metavar: str, parse: Callable[[str], Any]) -> None:
+        """Take a function of the text."""
+        self.name, self.parse = metavar, parse
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the value, or raise LagtopError."""
         try:
-            return self.parse(*([param.name] if param and self.keyed else []), value)
+            return self.parse(value)
         except LagtopError as error:
             text = error.marked.removeprefix(f"{arg(error.key)} " if error.key else "")
             raise LagtopError(f"{param.opts[-1] if param else ''} {text}") from None
@@ -69,11 +69,6 @@ def count(most: float = 1e9) -> Parsed:
         return int(exact)
 
     return Parsed("N", parse)
-
-
-def values(parse: Callable[..., Any] | None = None, **allowed: Any) -> Parsed:
-    """Return the type of an input that may have a unit (see `parse_value`)."""
-    return Parsed("X", partial(parse_value, parse=parse, **allowed), keyed=True)
 
 
 def parse_positive(text: str) -> float:
@@ -99,7 +94,7 @@ def _parse_list(text: str) -> list[str]:
 
 NUMBER = Parsed("X", parse_number)
 LIST = Listed("NAME,...", _parse_list)
-TIME = values()
+TIME = Parsed("X", partial(parse_value, "t"))
 _DOUBLE = Parsed("X", lambda text: float(parse_number(text)))
 
 
@@ -271,9 +266,10 @@ def top(
 
         found: Any = rad(run)
         for name in reversed(names):
-            parameter = values(parse, uncertain=parse is None, steady=name == "psidot0")
+            allowed: Any = {"uncertain": parse is None, "steady": name == "psidot0"}
+            kind = Parsed("X", partial(parse_value, name, parse=parse, **allowed))
             flag, text = f"--{name.replace('_', '-')}", _help_of(name, shows_default=whole)
-            found = option(flag, name, type=parameter, help=text)(found)
+            found = option(flag, name, type=kind, help=text)(found)
         words: Any = {"nargs": -1 if several else 1, "required": False, "metavar": argument}
         return cast(F, click.argument("words", shell_complete=_scenes_or_files, **words)(found))
 

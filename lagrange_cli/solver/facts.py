@@ -197,7 +197,7 @@ def facts_of(top: Top) -> Facts:
     facts = Facts(top, inputs, tilt, equal, a, rational(C / A) * r0, spin, 0, tilt.pole)
     if top.steady_word:
         return facts._replace(spin=_spin_of_a_word(facts))
-    if top.pole and precession:
+    if tilt.pole and precession:
         raise LagtopError(
             f"psidot0 must be 0 if the axis is vertical, got {float(precession)} "
             "(a vertical axis cannot precess; count the rate as spin)",

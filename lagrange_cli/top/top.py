@@ -192,11 +192,6 @@ class Top:
         """Whether the top starts at rest in nutation and precession, the case of the paper."""
         return bool(self.thetadot0 == 0 and self.psidot0 == 0)
 
-    @property
-    def pole(self) -> int:
-        """1 if the axis starts upright, -1 if it hangs, else 0."""
-        return self.exact_tilt.pole
-
     def check_body(self) -> None:
         """Raise LagtopError for C > 2A, which no body has; as numbers, they can be computed."""
         twice, remedy = 2 * self.exact("A"), "no rigid body has more"
