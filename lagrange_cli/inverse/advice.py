@@ -36,8 +36,8 @@ _LONG = 1500
 """Rows that cost as much again."""
 _WITHOUT_TILT = 3.0
 """Cost of a fit that has to find the tilt."""
-_LEAST_COST = 0.15
-"""Cost of a window over that of the whole, at least."""
+_LEAST_COST = (0.15, 0.5)
+"""Cost of a window over that of the whole, at least, with and without a recorded tilt."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
 _REFINED = 3
@@ -79,7 +79,9 @@ class Advice:
         if len(recording.angles) == 1:  # of which a known start is a part
             self.body = dict(known)
         self.cost = 1 + recording.t.size / _LONG
-        self.cost *= 1.0 if "theta" in recording.angles else _WITHOUT_TILT
+        has_no_tilt = "theta" not in recording.angles
+        self.cost *= _WITHOUT_TILT if has_no_tilt else 1.0
+        self.least = _LEAST_COST[has_no_tilt]
         self.left, self.is_early = _BUDGET - again * self.cost, True
         self.windows: dict[tuple[int, int], Outcome | None] = {}
 
@@ -103,7 +105,7 @@ class Advice:
 
     def _fit(self, recording: Measured, known: Known | None = None, **how: Any) -> Outcome | None:
         """Return a fit, None if it costs too much, or if it needs other inputs."""
-        cost = self.cost * max(recording.t.size / self.recording.t.size, _LEAST_COST)
+        cost = self.cost * max(recording.t.size / self.recording.t.size, self.least)
         self.is_early &= cost <= self.left
         if cost > self.left:
             return None

@@ -42,6 +42,8 @@ _ROWS_PER_LAG = 2.0
 """Least number of rows per period over the reach of a correlation."""
 _LAGS = 12
 """Longest reach of noise that correlates, in rows."""
+_LOBE = 0.5
+"""Negative correlation, over that of neighbours, that an oscillation makes, and no fit of noise."""
 _WITHIN = 0.75
 """Largest 95 % quantile of the residuals of an encoder, over its step."""
 
@@ -119,7 +121,8 @@ class Residuals:
 
         They may not correlate for as many rows again: an oscillation passes through 0.
         """
-        rest = np.abs(self.correlations[1 : max(self.y.size // 4, 2)])
+        rest = self.correlations[1 : max(self.y.size // 4, 2)]
+        rest = np.maximum(rest, np.where(rest < -_LOBE * rest[0], -rest, 0.0))
         nearer = np.cumsum(rest[:_LAGS] ** 2) - rest[:_LAGS] ** 2  # as in Bartlett's formula
         nearer = np.pad(nearer, (0, rest.size - nearer.size), mode="edge")
         large = rest >= 2.5 * np.sqrt((1 + 2 * nearer) / self.y.size)
@@ -134,17 +137,20 @@ class Residuals:
         after a mean of rows.  White noise and a slow oscillation together have almost r.
         """
         r, later = self.correlations[1:3]
-        return bool(later < max(r * r, 2 * r - 1) + 2.5 / math.sqrt(self.y.size))
+        return bool(later < max(r * r, 2 * r - 1) + 3 * (1 - r * r) / math.sqrt(self.y.size))
 
     def widening(self, chance: float = CHANCE) -> float:
         """Return the factor of standard deviations for correlated noise, at least 1.
 
-        Its square is 1 + 2 times the sum of the correlations, (1 + r)/(1 - r) if they are r^n.
+        Its square is 1 + 2 times the sum of the correlations while they fall and are above 0, as
+        the later ones are noise.  It is (1 + r)/(1 - r) if they are r^n.
         """
         if not self.is_coarse and abs(self.autocorrelation) <= _bound(self.y.size, chance):
             return 1.0
-        sums = float(np.sum(self.correlations[1 : min(self.reach, self.y.size // 4)]))
-        return math.sqrt(max(1 + 2 * sums, 1.0))
+        near = self.correlations[: self.y.size // 4]
+        is_noise = (near <= 0) | (np.diff(near, prepend=1.0) > 0)
+        ends = int(np.argmax(is_noise)) if is_noise.any() else near.size
+        return math.sqrt(1 + 2 * float(near[1:ends].sum()))
 
     def lost(self, frequency: float) -> float:
         """Return the share of an oscillation that a filter with these correlations takes away.
@@ -164,24 +170,38 @@ class Residuals:
         """Return how much a drifting oscillation exceeds noise, and the probability of noise.
 
         An F test of three harmonics of a frequency, times 1, t and t^2, against the rest, which
-        may be correlated from row to row.
+        may be correlated from row to row.  Harmonics describe much of the noise of few rows, too:
+        if a filter explains all residuals better, their correlation counts instead.
         """
         if self.rms < max(ROUNDING, self.step / 100):
             return 1.0, 1.0
         size = -(-self.t.size // 4000)
         t, y = (x[: x.size // size * size].reshape(-1, size).mean(1) for x in (self.t, self.y))
-        x = 2 * t / max(float(t[-1]), 1e-300) - 1
-        waves = np.exp(2j * np.pi * frequency * t[:, np.newaxis] * np.arange(4))
-        waves = np.concatenate([waves.real, waves.imag[:, 1:]], axis=1)
-        drifts = x[:, np.newaxis, np.newaxis] ** range(3)
-        basis = (waves[..., np.newaxis] * drifts).reshape(x.size, -1)[:, : max(x.size // 3, 1)]
+        x, whole = 2 * t / max(float(t[-1]), 1e-300) - 1, Residuals(t, y, self.step)
+        waves = np.exp(2j * np.pi * frequency * np.outer(t, range(4)))
+        drifting = waves[..., np.newaxis] * x[:, np.newaxis, np.newaxis] ** range(3)
+        basis = np.stack([drifting.real, drifting.imag], axis=-1).reshape(x.size, -1)
+        basis = basis[:, basis.any(axis=0)][:, : max(x.size // 3, 1)]
+        wide = whole.widening(chance) ** 2 if whole.filter_beats(basis) else 1.0
+        basis = basis[:, : max(int(x.size / wide / 3), 1)]
         factors, _, count, _ = np.linalg.lstsq(basis, y, rcond=1e-6)
         shown = basis @ factors
         explained, rest = float(shown @ shown), Residuals(t, y - shown, self.step)
-        dof = max(x.size / rest.widening(chance) ** 2 - count, 1.0)
+        dof = max(x.size / max(wide, rest.widening(chance) ** 2) - count, 1.0)
         noise = max(float(rest.y @ rest.y), 1e-12 * explained) / dof
         ratio = explained / count / noise
         return ratio, float(fdtrc(count, dof, ratio))
+
+    def filter_beats(self, basis: Array) -> bool:
+        """Return whether a filter explains the residuals better than some columns of a basis.
+
+        It has one parameter, by which the likelihood grows by (1 - r^2)^(-n/2).
+        """
+        count, r = self.y.size, self.autocorrelation
+        parts = (np.linalg.qr(basis)[0].T @ self.y) ** 2 / float(self.y @ self.y)
+        left = np.log(np.maximum(1 - np.cumsum(parts), 1e-12))
+        others = count * left + math.log(count) * np.arange(parts.size)
+        return self.is_smoothed and count * math.log(1 - r * r + 1e-12) < others.min()
 
     def faults(self, name: str, frequency: float, chance: float) -> Iterator[Reason]:
         """Yield why the residuals are not noise."""
@@ -199,7 +219,8 @@ class Residuals:
         bound = _bound(self.y.size, chance)
         alike = f"{shown}: neighbours correlate by {correlation:.2f}"
         rows_per_period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
-        is_far = correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS)
+        lags = max(self.reach, self.widening(chance) ** 2)
+        is_far = correlation > bound and lags > min(rows_per_period / _ROWS_PER_LAG, _LAGS)
         above = _ABOVE * (_SMOOTHED if correlation > bound and self.is_smoothed else 1.0)
         if self.rms > above * max(self.neighbours, self.step / math.sqrt(12), ROUNDING):
             times = self.rms / max(self.neighbours, ROUNDING)

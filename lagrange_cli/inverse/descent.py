@@ -24,8 +24,10 @@ _TRIED = np.array([0.01, 0.3, 10.0])
 """Factors of the damping that are tried in each step."""
 GAIN = 1e-3
 """Fall of chi^2 that a Gauss-Newton step promises at most at a minimum (twice the decrement)."""
+_STUCK = 1e-2
+"""Fall of chi^2 by a step, over that promise, below which chi^2 has kinks or is flat."""
 _SMALL = 0.1
-"""The same for very many numbers."""
+"""Promised fall for very many numbers."""
 Function = Callable[[Array, Any], Array]
 """Residuals of some tries, shape (starts, tries, numbers), from their parameters, shape (starts,
 tries, parameters), and the numbers of the starts."""
@@ -84,7 +86,8 @@ def descended(
         least[who] = np.where(better, found[rows, best], chi2)
         down = (rest[:, np.newaxis] @ rise)[:, 0]
         newton = np.linalg.solve(gram + 1e-13 * eye, down[..., np.newaxis])[..., 0]
-        who = who[(np.sum(down * newton, axis=-1) > gain) & (damping[who] < 1e8)]
+        is_stuck = better & (chi2 - least[who] < _STUCK * gain)
+        who = who[(np.sum(down * newton, axis=-1) > gain) & (damping[who] < 1e8) & ~is_stuck]
         if not who.size:
             break
     return x, least

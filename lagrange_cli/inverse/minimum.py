@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.types import Array
-from .descent import descended, polished, slopes
+from .descent import GAIN, descended, polished, slopes
 from .known import body_of
 from .problem import Problem, Ties
 from .spins import slowest_rate
@@ -19,6 +19,10 @@ MOST_ROWS = 1000
 """Rows of the fit that finds a minimum; its last steps use all rows."""
 _STEPS = 40
 """Steps of a descent at most."""
+_LAST = 10
+"""Steps with all rows at most."""
+_NEAR = 0.1
+"""Promised fall of chi^2 that ends a descent if minima are compared."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 _DEPENDENT = 1e-7
@@ -102,7 +106,7 @@ class Minimum:
         x = self.x[np.newaxis]
         x, _ = problem.thinned(MOST_ROWS).solve(x, _STEPS)
         if problem.recording.t.size > MOST_ROWS:
-            x = polished(problem.weighted, x, _STEPS)
+            x = polished(problem.weighted, x, _LAST)
         return replace(minimum_at(self.problem, x), is_curved=self.is_curved)
 
 
@@ -127,18 +131,18 @@ def converged(
     """Return the minimum near parameters of one start.
 
     Standard deviations that were not given come from the residuals; they are at least the
-    `floors`.  `factors` widen them for noise that is correlated.  The last steps with all rows, and
-    the shape of chi^2, are for a `final` minimum.
+    `floors`.  `factors` widen them for noise that is correlated.  The last steps, also with all
+    rows, and the shape of chi^2 are for a `final` minimum.
     """
-    few = problem.thinned(MOST_ROWS)
+    few, gain = problem.thinned(MOST_ROWS), GAIN if final else _NEAR
     if is_given := bool(problem.recording.sigma):
         problem, few = (replace(y, sizes=y.sizes * factors) for y in (problem, few))
-        x, _ = few.solve(x, _STEPS)
+        x, _ = few.solve(x, _STEPS, gain)
     else:
-        few, x = few.reweighted(x, floors, _STEPS // 2)
+        few, x = few.reweighted(x, floors, _STEPS // 2, gain)
         problem = replace(problem, sizes=few.sizes)
     if final and problem.recording.t.size > MOST_ROWS:
-        x = polished(problem.weighted, x, _STEPS)
+        x = polished(problem.weighted, x, _LAST)
         problem = problem if is_given else problem.with_noise(x, floors)
     problem = problem if is_given else replace(problem, sizes=problem.sizes * factors)
     found = minimum_at(problem, x)

@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -432,8 +433,7 @@ class Neighbours:
         """
         begin, old = first.motion, first.one
         motion = begin.along(first.change * (old.row == 0), begin.ratio)
-        every = [*self._everywhere(motion), *self._from_row(motion), wander(motion)]
-        every += unround(motion, motion.angles[1]) if math.isfinite(motion.ratio) else []
+        every = chain(self._everywhere(motion), self._from_row(motion), [wander(motion)])
         one = next(x for x in every if x.name == old.name)
         found = Finding(self, one._replace(row=old.row, tried=old.tried), motion)
         return min(first, found, key=lambda x: x.chi2)

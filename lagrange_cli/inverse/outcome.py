@@ -155,10 +155,14 @@ class Outcome(HasRecord):
 
         A known input contradicts only a motion that is right.
         """
-        found = [x for x in self.reasons if x.kind not in ADVICE]
-        found += [*self._of_data(), *self._misfits(), *self._of_neighbours()]
-        found.sort(key=lambda x: x.kind)
+        found = sorted(self.wrong(), key=lambda x: x.kind)
         return [x for x in found if x.kind < Kind.KNOWN] or found
+
+    def wrong(self) -> Iterator[Reason]:
+        """Yield why the fit has failed, what takes longest last."""
+        yield from (x for x in self.reasons if x.kind not in ADVICE)
+        for found in (self._of_data, self._misfits, self._of_neighbours):
+            yield from found()
 
     @property
     def is_spin_slow(self) -> bool:

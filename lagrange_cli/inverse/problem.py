@@ -156,13 +156,13 @@ class Problem:
         sizes = np.maximum(np.sqrt(np.nanmean(rest**2, axis=1) * share), least)
         return replace(self, sizes=sizes)
 
-    def reweighted(self, x: Array, least: Array, steps: int) -> tuple[Problem, Array]:
+    def reweighted(self, x: Array, least: Array, steps: int, gain: float) -> tuple[Problem, Array]:
         """Return the least squares whose standard deviations are those of the residuals."""
         problem = self
         for _ in range(_ESTIMATES):
-            x, _ = problem.solve(x, steps)
             problem = problem.with_noise(x, least)
-        return problem, x
+            x, _ = problem.solve(x, steps, gain)
+        return problem.with_noise(x, least), x
 
 
 def problem_of(

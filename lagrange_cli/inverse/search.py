@@ -24,7 +24,7 @@ from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .conditions import compare, ties_of
 from .known import START, Known, in_all_forms, scaled_known, time_power
 from .measured import ANGLE_OF, LEAST_ROWS, Measured
-from .minimum import MOST_ROWS, SURE, Minimum, converged, largest, minimum_at, slowest
+from .minimum import SURE, Minimum, converged, largest, minimum_at, slowest
 from .nutation import nutating_outcome
 from .outcome import Outcome
 from .problem import Problem, Ties, problem_of
@@ -43,13 +43,13 @@ from .spins import FASTER, aliased_note, reversed_note, unsure_note
 from .starts import best_starts, distinct
 from .steady import steady_outcome
 
-_STARTS = (12, 40)
+_STARTS = (12, 20)
 """Starts of the least squares, with and without a recorded tilt."""
 _STAGES = ((60, 8, 1.0, 4), (250, 20, 0.1, 3))
 """Rows, steps, promised fall of chi^2 that ends them, and ends that are kept, by stage."""
 _IN_PHASE = 0.7
 """Largest rms residual of the spin, in radians, of a motion that is in phase."""
-_COMPARABLE = 5.0
+_COMPARABLE = 2.0
 """Factor of the least chi^2 beyond which an end is dropped."""
 _LIKELY = 16.0
 """Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
@@ -90,7 +90,7 @@ def best_fit(
     for form, of_form in _forms(recording, signals, noise):
         found = _directed(form, known, frequency, of_form, asked)
         outcome = found or outcome
-        if found and not any(x.kind < Kind.KNOWN for x in found.failed):
+        if found and all(x.kind >= Kind.KNOWN for x in found.wrong()):
             break
     return outcome
 
@@ -147,7 +147,7 @@ def _directed(
     """
     plain = _nutation(recording, known, frequency, noise, asked)
     is_sure = recording.kind != "angles" or not {"psi", "phi"} <= recording.angles.keys()
-    if is_sure or not plain or (plain.is_spin_slow and not plain.failed):
+    if is_sure or not plain or (plain.is_spin_slow and not any(plain.wrong())):
         return plain
     image = _nutation(recording.mirrored, known, frequency, noise, asked)
     gain = plain.deviance(image) if image else -math.inf
@@ -190,12 +190,12 @@ def _nutation(
         if not likely:
             return None
         best, rows = _refined(likely[0], floors, turn), recording.t.size
-        rival = next((x for x in likely if likely[0].differs(x)), None)
-        if rival and rows > MOST_ROWS:
-            rival = _refined(rival, floors, turn)
-            rival = rival if rival.badness(rows) < best.badness(rows) + _LIKELY else None
+        level = best.badness(rows) + _LIKELY
+        others = (_refined(x, floors, turn) for x in likely[1:] if best.differs(x))
+        rival = next((x for x in others if best.differs(x) and x.badness(rows) < level), None)
         found = compare(best, {} if is_tied else known, scale, turn)
-        if not found.vector.best.unknown:
+        is_told = start or found.vector.estimates(found.vector.z[np.newaxis])
+        if not (found.vector.best.unknown and is_told):
             break
     best = found.vector.best
     if is_tied:

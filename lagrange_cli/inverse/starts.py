@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
@@ -30,7 +31,7 @@ _POLE = 1e-4
 """Least distance of a start from a pole, in radians."""
 _ROWS = (12, 50)
 """Rows at which all starts are compared, then the best."""
-_KEPT = 1500
+_KEPT = 800
 """Starts that are compared at more rows, and at once."""
 _ALIKE = 0.02
 """Difference of a and b, over 1 + their size in units of the period, of starts that are alike."""
@@ -53,7 +54,7 @@ def starts(signals: Mapping[str, Signal], tilt: float | None) -> Array:
     found: list[Array] = []
     pair = least[:, np.newaxis], greatest[:, np.newaxis]
     for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-        tops = nutating(*pair, 1.0, _HEIGHTS, signs)
+        tops = nutating(*pair, 1.0, _HEIGHTS, signs) if shown else _tops_on_grid(signs)
         for rate in rates:
             off = tops[3] - rate
             row, i = np.nonzero(off[:, :-1] * off[:, 1:] <= 0)
@@ -83,6 +84,13 @@ def starts(signals: Mapping[str, Signal], tilt: float | None) -> Array:
     ]
     both: Array = np.concatenate(states)
     return np.asarray(both[np.isfinite(both).all(axis=1)])
+
+
+@cache
+def _tops_on_grid(signs: tuple[int, int]) -> tuple[Array, Array, Array, Array]:
+    """Return the tops of all pairs of turning points, which are those of any recording."""
+    least, greatest = _grid()
+    return nutating(least[:, np.newaxis], greatest[:, np.newaxis], 1.0, _HEIGHTS, signs)
 
 
 def _turning_points(tilt: Signal) -> tuple[Array, Array, Array]:
