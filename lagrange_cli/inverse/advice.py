@@ -58,8 +58,10 @@ _ROWS_PER_WINDOW = 24
 """Least number of rows in such a window."""
 _FEW_PER_PERIOD = 8.0
 """Rows per nutation period from which an aliased nutation is unlikely."""
-_FEW = 0.03
+_FEW = 0.15
 """Largest share of rows that are outliers."""
+_ROUNDS = 3
+"""Fits without outliers, each of which may show others."""
 _LEAST_TIMES = 0.25
 """Least share of times that differ."""
 _CLOSER = 0.3
@@ -91,6 +93,7 @@ class Advice:
             yield from (Reason(Kind.READING, x) for x in self._names())
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
+        yield from (Reason(Kind.READING, x) for x in self._parts())
         if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         yield from (Reason(Kind.READING, x) for x in self.gap())
@@ -98,7 +101,7 @@ class Advice:
         first = next(iter(self.outcome.shown.values()), None)
         if first and first.one.row:  # a misreading acts in all rows
             readings = []
-        for texts in (*readings, self._parts):
+        for texts in readings:
             yield from (Reason(Kind.READING, x) for x in texts())
         if Kind.MACHINE not in self.kinds:
             yield from self._last()
@@ -168,8 +171,10 @@ class Advice:
             return
         meanings = {"up": "of the data points up", "axis": "is the figure axis"}
         seen = source.observed()
-        up, figure = own_frames(seen) or (np.eye(3), np.eye(3))
-        for near in (up, up * [1, -1, -1]):
+        frames = own_frames(seen)
+        up, figure = frames or (np.eye(3), np.eye(3))
+        y_up = np.eye(3)[:, [2, 0, 1]]  # the commonest, if noise hides the vertical
+        for near in (up, up * [1, -1, -1], *[y_up] * (frames is None)):
             space, body = near, figure
             align = alignment_of((space, body), left=False)
             if align == Alignment():
@@ -211,15 +216,24 @@ class Advice:
 
     def _parts(self) -> Iterator[str]:
         """Yield the rows without which the fit is good: outliers, and those before a release."""
-        recording = self.recording
+        recording, found = self.recording, self.outcome
         if self.kinds == {Kind.MACHINE}:
             return
-        rests = self.outcome.residuals.values()
-        wrong = {t for x in rests for t in x.t[x.outliers].tolist()}
-        others = recording.rows(~np.isin(recording.t, [*wrong]))
-        if 0 < len(wrong) <= _FEW * recording.t.size and self._is_good(others):
-            shown = ", ".join(f"{recording.t_start + t:.6g}" for t in sorted(wrong))
-            yield f"leave out the rows at t = {shortened(shown)}"
+        kept = np.ones(recording.t.size, bool)
+        for _ in range(_ROUNDS):
+            far = [x.t[x.beyond(_LEAVES)] for x in found.residuals.values()]
+            wrong = np.isin(found.recording.t, np.concatenate(far))
+            kept[np.flatnonzero(kept)[wrong]] = False
+            if not wrong.any() or np.mean(kept) < 1 - _FEW:
+                break
+            found = self._fit(recording.rows(kept)) or found
+            if self._is_better(found):
+                rows, t = np.flatnonzero(~kept), recording.t_start + recording.t
+                runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+                ends = [dict.fromkeys(t[[x[0], x[-1]]].tolist()) for x in runs]
+                shown = ", ".join(" to ".join(f"{y:.6g}" for y in x) for x in ends)
+                yield f"leave out the rows at t = {shortened(shown)}"
+                break
         if row := release(recording):
             free = recording.part(slice(row, None))
             if self._is_good(free):

@@ -97,9 +97,13 @@ class Residuals:
     @property
     def outliers(self) -> Mask:
         """Whether a residual is one that no noise has."""
+        return self.beyond(_OUTLIER)
+
+    def beyond(self, least: float) -> Mask:
+        """Return which residuals are larger than this many standard deviations of the others."""
         sizes = np.abs(self.y)
         usual = max(float(np.median(sizes)) / float(ndtri(0.75)), self.step, ROUNDING)
-        return np.asarray(sizes > _OUTLIER * usual)
+        return np.asarray(sizes > least * usual)
 
     @cached_property
     def correlations(self) -> Array:

@@ -227,7 +227,7 @@ class Finding:
     @property
     def is_possible(self) -> bool:
         """Whether its sign is possible, its size is small, and it leaves residuals of a top."""
-        most = 1 / (2 * math.pi**2) if self.one.is_square else _LARGEST  # no nutation is left
+        most = 1 / (2 * math.pi) ** 2 if self.one.is_square else _LARGEST  # half is left
         most = _LARGEST_WANDER if self.one.name == _WANDER else most
         size = abs(self.size)
         is_possible = size < most and (self.size > 0 or not self.one.is_positive)
