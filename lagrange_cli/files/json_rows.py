@@ -72,7 +72,7 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
     lists = {x: y for x, y in value.items() if isinstance(y, list)}
     texts = [x for x, y in lists.items() if not y or isinstance(y[0], str)]
     columns = {x: y for x, y in lists.items() if x not in texts or known([x])}
-    if known([*columns]):
+    if known([x for x, y in columns.items() if {*map(type, y[:1])} != {dict}]):
         sizes = {x: len(y) for x, y in columns.items()}
         if len({*sizes.values()}) > 1:
             raise LagtopError(f"columns must be equally long, got {shown(sizes)}")

@@ -460,6 +460,8 @@ def _json_table(
     table = Table(name, [], 0, Lines(text, number), "")
     if line.lstrip().startswith("[") or len(sample) == 1 or not _is_json(line):
         whole = text.split("\n", number - 1)[-1]
+        if len(sample) > 1 and _is_json(line):  # a list in each line, as Python prints it
+            whole = "[" + ",\n".join(x for _, x in table.rows) + "]"
         if len(whole) > LARGEST_ARRAY or whole.count(",") > _MOST_VALUES:
             most = (
                 f"{LARGEST_ARRAY} characters and {_MOST_VALUES} values: write one object per line"
@@ -476,7 +478,7 @@ def _json_table(
         is_named = are_lists and {*map(type, first)} == {str} and not _are_numbers(first)
         table = replace(table, rows=[*enumerate(rows[is_named:], 1)], place="row")
         if are_lists:
-            return replace(table, headings=first if is_named else None, width=len(first))
+            return replace(table, headings=first if is_named else None, width=len(first) or 1)
     headings: dict[str, None] = {}
     wrong = None
     for number, row in table.rows:

@@ -107,7 +107,7 @@ position | | x y z |
 above | above | x y; 0 1 |
 above | | x y |
 rates | | p q r | body
-rates | omega w angularvelocity gyro rates | x y z; 0 1 2 |
+rates | omega w angularvelocity gyro gyroscope rates | x y z; 0 1 2 |
 rates | omegabody omegalocal angularvelocitylocal wbody qvel | x y z; 0 1 2 | body
 rates | omegaspace omegaworld omegaglobal wspace | x y z; 0 1 2 | space
 angle_rates | | thetadot phidot psidot |

@@ -128,10 +128,13 @@ OF_JSON: list[dict[str, Any]] = [
         {"schema": {"fields": [{"name": x, "type": "any"} for x in OF_JSON[0]]}, "data": OF_JSON},
         {"columns": [*OF_JSON[0]], "index": [0, 1], "data": [[*row.values()] for row in OF_JSON]},
         [[*OF_JSON[0]], *([*row.values()] for row in OF_JSON)],
+        {"about": {"r0": 1}, "frames": OF_JSON},
+        "\n".join(json.dumps([*x]) for x in (OF_JSON[0], *map(dict.values, OF_JSON))),
     ],
 )
 def test_forms_of_json(content: Any, lagtop: Lagtop) -> None:
-    swept = lagtop("sweep", "-", "--keys", "r0,theta0_deg", input=json.dumps(content))
+    text = content if isinstance(content, str) else json.dumps(content)
+    swept = lagtop("sweep", "-", "--keys", "r0,theta0_deg", input=text)
     assert swept.stdout.splitlines()[1:] == ["a,50.0,10.0,", "b,50.0,20.0,"]
 
 
