@@ -63,19 +63,18 @@ def plant(node: ast.AST) -> bool:
 
 
 def planted(path: Path, which: float) -> tuple[str, str]:
-    """Return the text of a module with a fault, and its line before and after."""
+    """Return the text of a module with one fault, and its line before and after."""
     source = path.read_text(encoding="utf-8")
-    count = sum(map(plant, [*nodes_of(ast.parse(source))]))
-    tree, left = ast.parse(source), int(which * count)
-    for node in nodes_of(tree):
-        before = ast.unparse(node) if isinstance(node, ast.expr) else "..."
-        if plant(node):
-            if not left:
-                line = getattr(node, "lineno", 0)
-                after = ast.unparse(node) if isinstance(node, ast.expr) else "the opposite"
-                return ast.unparse(tree), f"{path.name}:{line}: {before[:60]} -> {after[:60]}"
-            left -= 1
-    raise ValueError(f"{path} has no place for a fault")
+    places = [i for i, node in enumerate([*nodes_of(ast.parse(source))]) if plant(node)]
+    if not places:
+        raise ValueError(f"{path} has no place for a fault")
+    tree = ast.parse(source)
+    node = [*nodes_of(tree)][places[int(which * len(places))]]
+    before = ast.unparse(node) if isinstance(node, ast.expr) else "..."
+    plant(node)
+    after = ast.unparse(node) if isinstance(node, ast.expr) else "the opposite"
+    line = f"{path.name}:{getattr(node, 'lineno', 0)}: {before[:60]} -> {after[:60]}"
+    return ast.unparse(tree), line
 
 
 def is_seen(copy: Path, folder: str) -> bool:
