@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from engines import Array, Body, dop853
 from lagtop import Top, fit
-from machines import gimballed
+from machines import gimballed, unlike
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli.inverse.measured import Measured, measured
@@ -28,21 +28,42 @@ def recording_from(t: Array, **arrays: Array) -> Measured:
     return measured(recording_of(t, arrays))
 
 
-def motion_of(top: Top, t: Array) -> dict[str, Array]:
-    """Return the angles of a top at times, by Euler's equations of a quaternion."""
-    turns = Rotation.from_quat(dop853(Body.of(top), t)[1][:, :4], scalar_first=True)
+def motion_of(top: Top, t: Array, **sizes: float) -> dict[str, Array]:
+    """Return the angles of a top at times by Euler's equations, or of a machine of some sizes."""
+    one = Body.of(top)
+    if sizes:
+        a, b, r0 = 2 * one.torque / one.A, one.C / one.A * one.rates[2], one.rates[2]
+        start = np.array([one.tilt, float(top.thetadot0), float(top.psidot0)])
+        move = unlike if sizes.keys() & {"moments", "beside"} else gimballed
+        return move(a, b, r0, start, t, **sizes)
+    turns = Rotation.from_quat(dop853(one, t)[1][:, :4], scalar_first=True)
     psi, theta, phi = turns.as_euler("ZXZ").T
     return {"theta": theta, "phi": phi, "psi": psi}
 
 
 def recorded(
-    *names: str, top: Top = TOP, rows: int = 50, seconds: float = 0.9, noise: float = 0.3, seed: int
+    *names: str,
+    top: Top = TOP,
+    t: Array | None = None,
+    rows: int = 50,
+    seconds: float = 0.9,
+    noise: float = 0.3,
+    seed: int,
+    sizes: Mapping[str, float] | None = None,
 ) -> tuple[Array, dict[str, Array]]:
-    """Return times and noisy angles, within half a turn but for the tilt."""
-    rng, t = np.random.default_rng(seed), np.linspace(0, seconds, rows)
-    exact = motion_of(top, t)
-    found = {x: exact[x] + rng.normal(scale=noise * DEGREE, size=rows) for x in names}
+    """Return times and angles with noise in degrees, within half a turn but for the tilt.
+
+    Those of a machine if it has sizes.
+    """
+    t = np.linspace(0, seconds, rows) if t is None else t
+    exact, rng = motion_of(top, t, **sizes or {}), np.random.default_rng(seed)
+    found = {x: exact[x] + rng.normal(scale=noise * DEGREE, size=t.size) for x in names}
     return t, {x: y if x == "theta" else np.angle(np.exp(1j * y)) for x, y in found.items()}
+
+
+def attitude_of(angles: Mapping[str, Array]) -> Rotation:
+    """Return the rotations from the body to space."""
+    return Rotation.from_euler("ZXZ", np.stack([angles[x] for x in ("psi", "theta", "phi")], 1))
 
 
 def axis_of(theta: Array, psi: Array) -> Array:
@@ -69,9 +90,3 @@ def assert_true(outcome: Outcome, truth: Mapping[str, float], *, least: int = 2)
     off = pulls(outcome, truth)
     assert len(off) >= least
     assert all(abs(x) < 4 for x in off.values()), off
-
-
-def slowed(time: float, t: Array) -> dict[str, Array]:
-    """Return the angles of TOP if friction slows its spin as exp(-t/time)."""
-    start = np.array([75 * DEGREE, 0.0, 0.0])
-    return gimballed(TRUTH["a"], TRUTH["b"], TRUTH["r0"], start, t, drag=t[-1] / time)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 import shlex
+import shutil
 from contextlib import chdir
 from decimal import Decimal
 from fractions import Fraction
@@ -21,17 +22,20 @@ import numpy as np
 import pint
 import pytest
 from click.testing import CliRunner, Result
-from lagtop import LagtopError, Top, sensitivities, solve
+from lagtop import LagtopError, Top, find, sensitivities, solve
 from scenes import UNIT
 from uncertainties import ufloat
 
 from lagrange_cli.account.explanation import explanations
 from lagrange_cli.arithmetic.enclosures import text_of
 from lagrange_cli.cli.app import main
+from lagrange_cli.comparison.convergence import convergence
 from lagrange_cli.elliptic.arguments import parse_arguments
 from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.names import check_names
+from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.quantities import quantities_in
+from lagrange_cli.recordings.reading import read_recording
 from lagrange_cli.solver.tables import ProvedTable
 from lagrange_cli.top import values
 from lagrange_cli.top.units import Units, conversion
@@ -42,6 +46,7 @@ WORDING, KNOWN = (
 )
 MESSAGES = re.findall(r"^((?:\$|>>>) .*)\n(.*)", WORDING, re.MULTILINE)
 """Command lines and calls, and what they end with; `...` stands for any words."""
+SLOW = WORDING.partition("\nSlow fits\n")[2].partition("\n\n\n")[0]
 NUMBERS = re.findall(r"^((?:\$|>>>) .*)\n((?:.+\n)+)", KNOWN, re.MULTILINE)
 """Command lines and calls, and all that they print; `...` stands for any cell."""
 
@@ -123,11 +128,35 @@ def columns_known(header: str) -> str:
     return ", ".join(f"{name} {' '.join(map(str, at))}" for name, at in found if name != "t")
 
 
+def read(text: str, *columns: str) -> str:
+    """Return the numbers that are read from a file, in SI, and what is said of its time."""
+    with TemporaryDirectory() as place:
+        (path := Path(place, "file")).write_text(text, encoding="utf-8")
+        found = read_recording(str(path), Reading.of(columns=[*columns] or None))
+    numbers = {"t": found.t} | {x: y for x, y in found.given.items() if x not in {"t", "missing"}}
+    shown = (f"{x} {' '.join(f'{z:.12g}' for z in np.ravel(y))}" for x, y in numbers.items())
+    return "\n".join([found.source.lines[0], *shown])
+
+
+def said_of(*errors: float) -> str:
+    """Return what is said of errors that grow over a second, at steps of 4, 2 and 1 ms."""
+    t = np.linspace(0, 1, 201)
+    runs = [(x, t, y * t) for x, y in zip((4e-3, 2e-3, 1e-3), errors, strict=True)]
+    found = convergence(runs, 0.1)
+    return f"{found.sentence} {found.converges}" if found else ""
+
+
+def tops_found(*conditions: str) -> list[float]:
+    """Return r0 of the tops with the nutation period 0.45 and other conditions."""
+    return [round(x.top.r0, 6) for x in find(["T_nutation=0.45", *conditions], r0="10:60")]
+
+
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
 NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
 NAMES |= {
     x.__name__: x for x in (sentence, unit, numbers, digits, regimes, row, derivative, uncertain)
 }
+NAMES |= {x.__name__: x for x in (read, said_of, tops_found)}
 NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 
@@ -155,7 +184,7 @@ def said_by(line: str) -> str:
         assert said.startswith("Warning: ")
         return said
     assert said.startswith("Error: ")
-    assert end.stdout == ""
+    assert end.stdout == "" or line.startswith("$ lagtop fit ")  # the report of a failed fit
     return said if end.exit_code == 2 else f"{said} [{end.exit_code}]"
 
 
@@ -176,6 +205,8 @@ def filled(folder: Path) -> Path:
     (folder / "loop").symlink_to("loop")
     for name, content in FILES.items():
         (folder / name).write_bytes(content)
+    for path in PAGES.glob("*.csv"):
+        shutil.copy(path, folder)
     return folder
 
 
@@ -186,7 +217,10 @@ def state_of(folder: Path) -> dict[Path, tuple[int, int]]:
 
 
 @pytest.mark.filterwarnings("ignore::lagrange_cli.MixedBodyWarning")
-@pytest.mark.parametrize(("line", "said"), MESSAGES)
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [pytest.param(*x, marks=[pytest.mark.slow] * (x[0] in SLOW)) for x in MESSAGES],
+)
 def test_a_message(line: str, said: str, folder: Path) -> None:
     before = state_of(folder)
     with chdir(folder):

@@ -22,7 +22,7 @@ _OTHER = {"wxyz": "xyzw", "xyzw": "wxyz", "body": "space", "space": "body"}
 _RATES, _ANGLES = {"rates", "angle_rates"}, {*ANGLES, "euler"}
 _TAKEN = "the angles are in {} and were taken as {}"
 _NAME = "give their columns names such as theta_{}"
-_HORIZONTAL = "theta is measured from the horizontal"
+_FROM = "theta is measured from the {}"
 BACKWARDS = "time runs backwards"
 Undo = Callable[[Recording], Recording]
 """Returns a recording as it was meant."""
@@ -87,12 +87,13 @@ def _of_conventions(recording: Recording) -> Iterator[Misreading]:
 def _of_numbers(recording: Recording) -> Iterator[Misreading]:
     """Yield other meanings of the numbers."""
     given, theta, scale = recording.given.keys(), {"theta"}, _scale(recording)
-    up = partial(np.subtract, math.pi / 2)
+    up, elevated = partial(np.subtract, math.pi / 2), "elevation" in " ".join(recording.source.used)
+    names = ("vertical", "theta") if elevated else ("horizontal", "elevation")
     for keys, change, kind, name, remedy in (
         (_RATES, np.radians, "rates", "the rates are in degrees per unit of time", ""),
         (_ANGLES, np.radians, "scale", _TAKEN.format("degrees", "radians"), _NAME.format("deg")),
         (_ANGLES, np.degrees, scale, _TAKEN.format("radians", "degrees"), _NAME.format("rad")),
-        (theta, up, "attitude", _HORIZONTAL, "name its column elevation"),
+        (theta, up, "attitude", _FROM.format(names[0]), f"name its column {names[1]}"),
         ({"psi"}, np.negative, "sense", "psi is counted backwards", ""),
         ({"phi"}, np.negative, "sense", "phi is counted backwards", ""),
     ):

@@ -214,36 +214,6 @@ def test_order_of_convergence(method: Any, steps: list[float], order: int) -> No
     assert [(row.step, row.cause) for row in rows] == [(step, None) for step in steps]
 
 
-@pytest.mark.parametrize(
-    ("errors", "order", "words"),
-    [
-        ([1e-2, 6.3e-4, 4e-5], 4, "falls with the step; the order of convergence is 3.98"),
-        ([8e-9, 1e-9, 1.25e-10], 3, "falls with the step; the order of convergence is 3.00"),
-        ([1e-3, 2e-11, 3e-11], 26, "falls with the step; the order"),  # only rounding grows
-        ([0.4, 0.1, 0.025], 2, "falls with the step; the order of convergence is 2.00"),
-        ([0.5, 0.275, 0.21875], 2, "falls to 2.0e-01 as the step falls to 0 (order 2.0"),
-        ([0.686, 0.293, 0.137], 1, "falls with the step; the order of convergence is 1.1"),
-        ([1e-2, 1e-2, 1e-2], None, "not fall with the step: the numbers may have been rounded"),
-        ([0.2, 0.2, 0.2], None, "not fall with the step: this is the motion of another top"),
-        ([2.9e-2, 2.2e-3, 3.5e-3], None, "2.2e-03 to 3.5e-03 as the step falls from 0.002 to"),
-        ([1.5e-7, 1.6e-2, 4e-5], None, "from 1.5e-07 to 1.6e-02 as the step falls from 0.004 to"),
-        ([1e-3, 0.0, 0.0], None, "falls with the step, but shows no single order"),
-        ([1e-1, 1e-2, 2.5e-6], None, "falls with the step, but shows no single order"),
-    ],
-)
-def test_how_errors_depend_on_the_step(
-    errors: list[float], order: float | None, words: str
-) -> None:
-    steps = zip([4e-3, 2e-3, 1e-3], errors, strict=True)
-    found = convergence([(h, T, x * T / T[-1]) for h, x in steps], 0.1)
-    assert found
-    assert words in found.sentence
-    assert found.converges == any(
-        x in words for x in ("order of", "numbers", "the order", "single")
-    )
-    assert found.order == (order and pytest.approx(order, abs=0.5))
-
-
 def test_a_step_that_loses_the_phase_at_once() -> None:
     """The errors are compared at a time that all trajectories have, not at their start."""
     steps = (0.1, 0.9), (0.05, 0.18), (0.025, 0.03)

@@ -7,7 +7,6 @@ import math
 import os
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
@@ -111,31 +110,6 @@ def test_json_of_many_levels_is_refused(command: str, levels: int, lagtop: Lagto
         for content in (text, f'{{"r0": {text}}}\n'):
             result = lagtop(*command.split(), input=content)
             assert (result.exit_code, result.stderr.count("\n")) == (65, 1), result.stderr
-
-
-OF_JSON: list[dict[str, Any]] = [
-    {"id": "a", "r0": 50, "theta0_deg": 10},
-    {"id": "b", "r0": None, "theta0_deg": 20},
-]
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        OF_JSON,  # and as pandas writes them, by its `orient`
-        {str(i): row for i, row in enumerate(OF_JSON)},
-        {key: {str(i): row[key] for i, row in enumerate(OF_JSON)} for key in OF_JSON[0]},
-        {"schema": {"fields": [{"name": x, "type": "any"} for x in OF_JSON[0]]}, "data": OF_JSON},
-        {"columns": [*OF_JSON[0]], "index": [0, 1], "data": [[*row.values()] for row in OF_JSON]},
-        [[*OF_JSON[0]], *([*row.values()] for row in OF_JSON)],
-        {"about": {"r0": 1}, "frames": OF_JSON},
-        "\n".join(json.dumps([*x]) for x in (OF_JSON[0], *map(dict.values, OF_JSON))),
-    ],
-)
-def test_forms_of_json(content: Any, lagtop: Lagtop) -> None:
-    text = content if isinstance(content, str) else json.dumps(content)
-    swept = lagtop("sweep", "-", "--keys", "r0,theta0_deg", input=text)
-    assert swept.stdout.splitlines()[1:] == ["a,50.0,10.0,", "b,50.0,20.0,"]
 
 
 def test_units_in_a_row_below_the_headings(lagtop: Lagtop) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import sys
@@ -24,7 +23,6 @@ from lagrange_cli.recordings.observed import observe, quantities_of
 from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.quantities import QUANTITIES, expanded, quantities_in
 from lagrange_cli.recordings.reading import read_recording
-from lagrange_cli.recordings.times import read_times
 from lagrange_cli.top.units import Units
 
 PI = math.pi
@@ -96,58 +94,6 @@ def test_other_columns_may_share_a_name_and_hold_words(tmp_path: Path) -> None:
     file = read_recording(str(path), Reading())
     assert sorted(file.given) == ["missing", "t", "theta"]
     assert file.source.unused == ["note", "note", "run"]
-
-
-@pytest.mark.parametrize(
-    ("text", "found"),
-    [
-        ("t,theta_rad\n0.5,1", {"t": [0.5], "theta": [1]}),
-        ("t [ms],ϑ [°]\n500,90", {"t": [0.5], "theta": [PI / 2]}),
-        ("Time (min),Tilt (mrad)\n0.5,250", {"t": [30], "theta": [0.25]}),
-        (
-            "t;ω_x (rpm);ω_y (rpm);ω_z (rpm)\n0;30;-60;90,0",
-            {"rates": [PI, -2 * PI, 3 * PI]},
-        ),
-        ("t,x (cm),y (cm),z (cm)\n0,3,0.5,-1", {"position": [0.03, 0.005, -0.01]}),
-        (
-            "t,rotvec_x_deg,rotvec_y_deg,rotvec_z_deg\n0,180,0,90",
-            {"rotvec": [PI, 0, PI / 2]},
-        ),
-        ("t,elevation\n0,60", {"theta": [PI / 6]}),
-        ("# t [0.1 ms],theta_deg (deg)\n5000,90", {"t": [0.5], "theta": [PI / 2]}),
-        ("t [ns],theta_rad [rad]\n5e8,1", {"t": [0.5], "theta": [1]}),
-        ("t,elevation [rad]\n0,1", {"theta": [PI / 2 - 1]}),
-    ],
-)
-def test_units_in_headings(text: str, found: dict[str, list[float]], tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    path.write_text(f"{text}\n", "utf-8")
-    values = read(path, radians=False)
-    for key, exact in found.items():
-        assert values[key][0] == pytest.approx(exact, rel=1e-15)
-    assert float(next(iter(read_times(str(path)).exact))) == values["t"][0, 0]
-
-
-@pytest.mark.parametrize(
-    ("names", "found"),
-    [
-        (["t", "theta", "_", "_", "_"], [0.5, PI / 2]),
-        (["t [s]", "theta_rad", "_", "_", "_"], [500, 90]),
-        (["t [min]", "theta", "_", "_", "_"], [3e4, PI / 2]),
-    ],
-)
-def test_names_keep_the_units_of_headings(
-    names: list[str], found: list[float], tmp_path: Path
-) -> None:
-    """An axis has none."""
-    headings = "Zeit [ms],Neigung [Grad],x [m],y [m],z [m]".split(",")
-    text = ";".join(headings) + "\n0;1;0;0;1\n500;90;0;0;1\n"
-    objects = dict(zip(headings, (500, 90, 0, 0, 1), strict=True))
-    for content in (text, json.dumps([objects, objects | {"Zeit [ms]": 501}])):
-        (tmp_path / "file").write_text(content)
-        values = read(tmp_path / "file", names, radians=False)
-        row = -1 if content is text else 0
-        assert [values["t"][row, 0], values["theta"][row, 0]] == pytest.approx(found)
 
 
 def test_conventions_and_masks_of_a_trajectory(tmp_path: Path) -> None:

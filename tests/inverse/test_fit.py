@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import fuzz_fits
 import numpy as np
 import pytest
 import recordings
-from engines import Body, dop853
-from lagtop import LagtopError, Top, fit, solve
+from engines import wxyz
+from lagtop import Top, fit, solve
 from noisy_recordings import (
     DEGREE,
     TOP,
     TRUTH,
     assert_true,
-    axis_of,
+    attitude_of,
     fitted,
     motion_of,
     recorded,
@@ -23,112 +25,82 @@ from noisy_recordings import (
 )
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli.inverse.motions import angles, nutating, states_of
 from lagrange_cli.inverse.problem import problem_of
-from lagrange_cli.recordings.doubts import pivot_of
+from lagrange_cli.names import ANGLES
 
-SLOW = ("small", "attitude", "pole", "encoder", "smooth", "known")
-
-
-@pytest.mark.parametrize("signs", [(1, 1), (-1, -1)])
-def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[int, int]) -> None:
-    one = np.array([0.5]), np.array([1.2]), 0.4, np.array([0.3]), signs
-    a, b, beta, rate = (float(x[0]) for x in nutating(*one))
-    start = (beta - b * math.cos(0.5)) / math.sin(0.5) ** 2
-    t = np.array([0.2, 0.4, 4.0])
-    theta, _, psi = angles(states_of(a, b, 0.5, 0.0, start)[np.newaxis], t)[:, 0]
-    assert theta == pytest.approx([1.2, 0.5, 0.5], abs=1e-7)
-    assert psi[2] / 4 == pytest.approx(rate, rel=1e-9)
+slow = pytest.mark.slow
 
 
 @pytest.mark.parametrize(
-    "names",
+    ("names", "known", "note"),
     [
-        ("theta", "psi"),
-        pytest.param(("theta", "phi"), marks=pytest.mark.slow),
-        pytest.param(("phi", "psi"), marks=pytest.mark.slow),
+        (("theta", "psi"), {}, ""),
+        pytest.param(("theta", "phi"), {}, "", marks=slow),
+        pytest.param(("phi", "psi"), {}, "", marks=slow),
+        (ANGLES, {}, "psi counts in the other direction: its sign was changed"),
+        (("theta",), {"psidot0": 0}, "the sign of b is not determined"),
+        (("psi",), {"theta0_deg": 75}, ""),
     ],
 )
-def test_recorded_angles_give_the_top(names: tuple[str, ...]) -> None:
-    rows = 50 if "theta" in names and "psi" in names else 120
+def test_recorded_angles_give_the_top(
+    names: tuple[str, ...], known: dict[str, float], note: str
+) -> None:
+    rows = 50 if len(names) == 1 or {"theta", "psi"} <= {*names} else 120
     t, seen = recorded(*names, rows=rows, seconds=0.018 * rows, noise=0.2, seed=1)
-    assert_true(fitted(t, seen, sigma=0.2 * DEGREE), TRUTH | {"theta0_deg": 75, "psidot0": 0})
-
-
-def test_either_direction_of_psi() -> None:
-    t, seen = recorded("theta", "phi", "psi", seed=3)
-    outcome = fit(t, theta=seen["theta"], phi=seen["phi"], psi=-seen["psi"])
-    assert_true(outcome, TRUTH)
-    assert outcome.notes[0] == "psi counts in the other direction: its sign was changed"
+    if "psi counts" in note:
+        seen["psi"] *= -1
+    outcome = fitted(t, seen, sigma=0.2 * DEGREE, known=known)
+    assert_true(outcome, TRUTH | {"theta0_deg": 75, "psidot0": 0})
+    for said in ("psi counts", "the sign of b"):
+        assert any(said in x for x in outcome.notes) == (said in note)
 
 
 @pytest.mark.parametrize("kind", ["axis", "quaternion"])
 def test_an_axis_and_an_attitude(kind: str) -> None:
     rng, t = np.random.default_rng(4), np.linspace(0, 1.2, 70)
-    turns = Rotation.from_quat(dop853(Body.of(TOP), t)[1][:, :4], scalar_first=True)
-    noisy = turns * Rotation.from_rotvec(rng.normal(scale=0.3 * DEGREE, size=(70, 3)))
-    values = noisy.as_quat(scalar_first=True) if kind == "quaternion" else noisy.as_matrix()
-    outcome = fit(t, **{kind: values if kind == "quaternion" else values[:, :, 2]})
+    noise = Rotation.from_rotvec(rng.normal(scale=0.3 * DEGREE, size=(70, 3)))
+    noisy = attitude_of(motion_of(TOP, t)) * noise
+    outcome = fitted(t, {kind: wxyz(noisy) if kind == "quaternion" else noisy.apply([0, 0, 1])})
     assert_true(outcome, TRUTH)
     assert [*outcome.residuals] == ["theta", "across", *["along"] * (kind == "quaternion")]
 
 
 def test_residuals_of_an_attitude_are_a_small_rotation() -> None:
     """Along the meridian, across it, and about the axis: the rotation in the frame of the body."""
-    t, exact = np.linspace(0, 1, 20), motion_of(TOP, np.linspace(0, 1, 20))
-    turns = Rotation.from_euler("ZXZ", np.stack([exact[x] for x in ("psi", "theta", "phi")], 1))
+    t = np.linspace(0, 1, 20)
     small = np.random.default_rng(24).normal(scale=1e-4, size=(20, 3))
-    moved = (turns * Rotation.from_rotvec(small)).as_quat(scalar_first=True)
-    recording = recording_from(t, quaternion=moved)
+    moved = wxyz(attitude_of(motion_of(TOP, t)) * Rotation.from_rotvec(small))
     state = np.array([[TRUTH["a"], TRUTH["b"], 75 * DEGREE, 0.0, 0.0]])
     zeros = np.array([[0.0], [0.0], [TRUTH["r0"]]])
-    problem, x = problem_of(recording, np.ones(3), state, zeros, None)
+    problem, x = problem_of(recording_from(t, quaternion=moved), np.ones(3), state, zeros, None)
     theta, across, along = problem.residuals(x[:, np.newaxis])[0, 0]
     assert along == pytest.approx(small[:, 2], abs=1e-7)
     assert np.hypot(theta, across) == pytest.approx(np.hypot(small[:, 0], small[:, 1]), abs=1e-7)
 
 
 @pytest.mark.parametrize(
-    ("name", "known"),
+    ("names", "noise", "top"),
     [
-        ("theta", {"psidot0": 0}),
-        ("psi", {"theta0_deg": 75}),
+        pytest.param(
+            *(("theta", "phi"), 3e-3, (TRUTH["a"], 17.0, 30.0, math.pi, 6.0, 0.0)), marks=slow
+        ),
+        (("theta", "psi"), 3e-3, (TRUTH["a"], 17.0, 30.0, 0.0, 6.0, 0.0)),
+        (ANGLES, 3e-4, (53.8, 16.3, 11.1, 0.009, 0.0, 0.0)),  # the nutation is 0.1 degrees
     ],
 )
-def test_one_angle_and_a_known_start(name: str, known: dict[str, float]) -> None:
-    t, seen = recorded(name, seed=5)
-    outcome = fitted(t, seen, known=known)
-    assert_true(outcome, TRUTH)
-    assert any("sign of b is not determined" in x for x in outcome.notes) == (name == "theta")
+def test_a_top_at_the_vertical(names: Sequence[str], noise: float, top: tuple[float, ...]) -> None:
+    t, rng = np.linspace(0, 1.5, 150), np.random.default_rng(3)
+    exact = fuzz_fits.Top(*top).motion(t)
+    seen = {x: np.angle(np.exp(1j * (exact[x] + rng.normal(scale=noise, size=150)))) for x in names}
+    truth = dict(zip(("a", "b", "r0"), top, strict=False))
+    assert_true(fitted(t, seen | {"theta": np.abs(seen["theta"])}), truth)
 
 
-def test_a_top_next_to_the_vertical() -> None:
-    """A nutation of a tenth of a degree about a tilt of half a degree."""
-    top = Top(m=1, s=1, g=26.9, A=1, C=1.461, r0=11.14, theta0_deg=0.5)
-    t, seen = recorded("theta", "phi", "psi", top=top, seconds=1.5, noise=0.02, seed=6)
-    assert_true(fitted(t, seen), {"a": 53.8, "b": 1.461 * 11.14, "r0": 11.14})
-
-
-@pytest.mark.parametrize(
-    ("names", "theta0"),
-    [pytest.param(("theta", "phi"), math.pi, marks=pytest.mark.slow), (("theta", "psi"), 0.0)],
-)
-def test_a_top_that_starts_upright_with_a_rate(names: tuple[str, ...], theta0: float) -> None:
-    truth, t = {"a": TRUTH["a"], "b": 17.0, "r0": 30.0}, np.linspace(0, 1.2, 150)
-    exact = fuzz_fits.Top(TRUTH["a"], 17.0, 30.0, theta0, 6.0, 0.0).motion(t)
-    noise = np.random.default_rng(3).normal(scale=3e-3, size=(2, 150))
-    seen = {x: np.angle(np.exp(1j * (exact[x] + y))) for x, y in zip(names, noise, strict=True)}
-    seen["theta"] = np.abs(seen["theta"])
-    assert_true(fitted(t, seen), truth)
-
-
-@pytest.mark.slow
+@slow
 def test_irregular_times_with_two_rows_per_period() -> None:
-    rng = np.random.default_rng(7)
-    t = np.concatenate([[0], np.sort(rng.uniform(0, 20, 119))])
+    t = np.append(0, np.sort(np.random.default_rng(7).uniform(0, 20, 119)))
     top = Top(m=1, s=1, g=164, A=1, C=1.2, r0=-3.6, theta0_deg=66, thetadot0=1.3, psidot0=-2.5)
-    exact = motion_of(top, t)
-    seen = {x: np.angle(np.exp(1j * (exact[x] + rng.normal(scale=2e-3, size=120)))) for x in exact}
+    seen = recorded(*ANGLES, top=top, t=t, noise=0.1, seed=7)[1]
     assert_true(fitted(t, seen), {"a": 328, "b": -1.2 * 3.6, "r0": -3.6})
 
 
@@ -150,70 +122,17 @@ def test_the_sample_gives_the_body() -> None:
     count = sum(x.y.size for x in outcome.residuals.values())
     assert outcome.dof == count - 8  # a, b, r0, three of the start, two zeros
     assert "11 % below the fit" in outcome.numbers["precession_rate_elementary"].meaning
+    for few in (12, 13):  # every row is next to an end
+        assert fit(t[:few], theta=theta[:few], psi=psi[:few]).verdict in {"failed", "good"}
 
 
-def test_the_recordings_are_what_the_script_writes() -> None:
-    for camera in (recordings.SMALL_TOP, recordings.WHEEL):
-        assert recordings.text(camera) == (recordings.SAMPLES / camera.name).read_text()
-
-
-@pytest.mark.slow
+@slow
 def test_noise_of_many_rows_is_averaged() -> None:
     """A thousand rows find the minimum, all rows refine it: uncertainties fall as 1/sqrt(rows)."""
     few, many = (fitted(*recorded("theta", "psi", rows=x, seed=8)) for x in (150, 2400))
     assert_true(many, TRUTH)
     for key in ("a", "b", "theta0_deg", "T_nutation"):
         assert few.numbers[key].std / many.numbers[key].std == pytest.approx(4, rel=0.15), key
-
-
-@pytest.mark.parametrize("offset", [(0, 0, 0.05), (0.02, 0, 0), (0, 0, 0)])
-def test_a_marker_whose_origin_is_not_at_the_pivot(offset: tuple[float, ...]) -> None:
-    rng, exact = np.random.default_rng(19), motion_of(TOP, np.linspace(0, 3, 180))
-    marker = 0.15 * axis_of(exact["theta"], exact["psi"]) + rng.normal(scale=1e-3, size=(180, 3))
-    found = pivot_of(marker + offset)
-    if any(offset):
-        assert found
-        assert (abs(found.at - offset) < 4 * found.std).all()
-        assert found.std.max() < 0.005
-    else:
-        assert found is None
-
-
-@pytest.mark.slow
-def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None:
-    verdicts = [fuzz_fits.checked(seed, easy=True) for seed in range(3001, 3013)]
-    assert all(x.is_right or x.word in {"failed", "refused"} for x in verdicts), verdicts
-    assert sum(x.is_right and x.word == "good" for x in verdicts) >= 10
-    sizes = np.abs([x for verdict in verdicts for x in verdict.pulls.values() if verdict.is_right])
-    assert 0.5 < np.mean(sizes < 1) < 0.85
-
-
-@pytest.mark.parametrize("look", ["axis", *(pytest.param(x, marks=pytest.mark.slow) for x in SLOW)])
-def test_hard_recordings_are_fitted(look: str) -> None:
-    results = [fuzz_fits.checked(seed, look=look) for seed in (1, 106)]
-    assert all(x.is_right or not x.word.startswith("good") for x in results), results
-    assert any(x.word == "good" for x in results), results
-
-
-def test_windows_keep_the_time_and_have_rows_of_every_angle() -> None:
-    t = 100 + np.arange(60) / 10
-    parts = recording_from(t, theta=np.ones(60), psi=t).windows(3)
-    assert [(x.name, x.t.size, x.t[0]) for x in parts] == [
-        (f"window {i}", 20, 0) for i in (1, 2, 3)
-    ]
-    assert [x.t_start for x in parts] == pytest.approx([100, 102, 104], abs=0.11)
-    assert [x.middle for x in parts] == pytest.approx([100.95, 102.95, 104.95], abs=0.11)
-    with pytest.raises(LagtopError, match="12 rows or more in each window, got 0"):
-        recording_from(t, theta=np.ones(60), psi=np.where(t < 102, t, np.nan)).windows(3)
-
-
-def test_arrays_that_are_no_recording_are_refused_by_name() -> None:
-    """Arrays come from no file: angles in degrees, and an axis without direction."""
-    t = np.linspace(0, 1, 50)
-    with pytest.raises(LagtopError, match=r"^the recording: theta must be between 0 and 180 deg"):
-        fit(t, theta=np.full(50, 100.0), psi=t)
-    with pytest.raises(LagtopError, match=r"^the recording: it must have 12 rows or more"):
-        fit(t, axis=np.zeros((50, 3)))
 
 
 def test_any_unit_of_time() -> None:
@@ -227,3 +146,53 @@ def test_any_unit_of_time() -> None:
     for key, power in powers.items():
         found, std = other.numbers[key][:2]
         assert found == pytest.approx(one.numbers[key].value * scale**power, abs=0.02 * std)
+
+
+@slow
+def test_no_wrong_fit_of_a_random_recording_is_good_and_most_are_right() -> None:
+    verdicts = [fuzz_fits.checked(seed, easy=True) for seed in range(3001, 3013)]
+    assert all(x.is_right or x.word in {"failed", "refused"} for x in verdicts), verdicts
+    assert sum(x.is_right and x.word == "good" for x in verdicts) >= 10
+    sizes = np.abs([x for verdict in verdicts for x in verdict.pulls.values() if verdict.is_right])
+    assert 0.5 < np.mean(sizes < 1) < 0.85
+
+
+HARD: list[tuple[int, str, str]] = [
+    (1, "axis", "good"),
+    (106, "small", "good"),
+    (106, "attitude", "good"),
+    (106, "pole", "good"),
+    (106, "encoder", "good"),
+    (1, "smooth", "good"),
+    (106, "known", "good"),
+    (70101, "", "failed"),  # one phi at a pole would determine all
+    (50132, "", "failed"),  # a mirror image has another a
+    (70204, "", "good"),  # a mirror image would need a turn per row
+    (70117, "", "good"),  # bins hide leaps of psi
+    (90130, "", "good"),  # the mirror image is as near, with a turn per row
+    (90536, "", "good"),  # the valley of chi^2 is long and bent
+    (93495, "", "good, no nutation"),  # a nutation that noise resembles
+    (90690, "", "good"),  # C does not show how many turns the spin makes
+]
+
+
+@pytest.mark.parametrize(
+    ("seed", "look", "verdict"), [HARD[0], *(pytest.param(*x, marks=slow) for x in HARD[1:])]
+)
+def test_hard_recordings(seed: int, look: str, verdict: str) -> None:
+    result = fuzz_fits.checked(seed, look=look)
+    assert result.word == verdict
+    assert result.is_right or verdict == "failed"
+
+
+def test_noise_of_psi_and_phi_may_grow_beside_a_pole() -> None:
+    """A tracker sees the axis, whose noise turns psi and phi by large angles near the pole."""
+    case, rng = fuzz_fits.drawn(106, look="pole"), np.random.default_rng(1)
+    seen: Any = dict(case.arrays)
+    turned = rng.normal(scale=case.noise["theta"], size=case.t.size) / np.sin(seen["theta"])
+    seen["psi"] = seen["psi"] + turned
+    seen["phi"] = seen["phi"] - turned * np.cos(seen["theta"])
+    outcome = fit(case.t, **seen)
+    assert (outcome.verdict, outcome.recording.kind) == ("good", "attitude")
+    pulls = fuzz_fits.pulls(outcome, case, mirrored=False)
+    assert all(abs(x) < fuzz_fits.FAR for x in pulls.values()), pulls

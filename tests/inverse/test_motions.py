@@ -12,16 +12,10 @@ import pytest
 from lagtop import Top, solve
 from scenes import UNIT
 
-from lagrange_cli.bench.hard_scenes import nutating
-from lagrange_cli.inverse.motions import angles, gaps_of, states_of
+from lagrange_cli.bench.hard_scenes import nutating as hard_scene
+from lagrange_cli.inverse.motions import angles, gaps_of, nutating, states_of
 
-KINDS_OF_GAPS = (
-    "generic",
-    "from rest",
-    "near a pole",
-    "near separatrix",
-    "slow",
-)
+KINDS_OF_GAPS = ("generic", "from rest", "near a pole", "near separatrix", "slow")
 EPS = 2.0**-52
 
 
@@ -44,27 +38,34 @@ def test_motions_in_doubles_are_those_of_the_solver(theta0_deg: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "start",
-    [
-        {"theta0_deg": 60, "r0": 0},
-        {"theta0_deg": 120, "psidot0": 1, "r0": 0.5, "thetadot0": 2.5},
-        {"theta0_deg": 60, "psidot0": -2, "r0": 1, "thetadot0": 0.7},
-    ],
+    ("cosine", "r0", "thetadot0", "psidot0"),
+    [(0.5, 0, 0, 0), (-0.5, 0.5, 2.5, 1), (0.5, 1, 0.7, -2)],
 )
-def test_the_axis_passes_over_a_pole(start: dict[str, Any]) -> None:
-    motion = solve(Top(**UNIT, **start))
-    t = np.linspace(0, 9, 50)
-    rates = start.get("thetadot0", 0), start.get("psidot0", 0)
-    state = states_of(motion.a, motion.b, math.radians(start["theta0_deg"]), *rates)
-    cosine = round(2 * math.cos(math.radians(start["theta0_deg"]))) / 2
+def test_the_axis_passes_over_a_pole(
+    cosine: float, r0: float, thetadot0: float, psidot0: float
+) -> None:
+    tilt, t = math.acos(cosine), np.linspace(0, 9, 50)
+    start = {"theta0_deg": round(math.degrees(tilt)), "thetadot0": thetadot0, "psidot0": psidot0}
+    motion = solve(Top(**UNIT, **start, r0=r0))
+    state = states_of(motion.a, motion.b, tilt, thetadot0, psidot0)
     state[2:4] = math.sqrt((1 - cosine) / 2), math.sqrt((1 + cosine) / 2)
-    state[5] = rates[1] * math.sqrt(1 - cosine**2)
-    found = angles(state[np.newaxis], t)[:, 0]
-    exact = np.stack(motion.angles(t))
+    state[5] = psidot0 * math.sqrt(1 - cosine**2)
+    found, exact = angles(state[np.newaxis], t)[:, 0], np.stack(motion.angles(t))
     # a rounding of the momentum decides on which side the axis passes: half a turn of both angles
     turns = (found - exact)[1:] / math.pi
     assert found[0] == pytest.approx(exact[0], abs=1e-7)
     assert np.abs(turns - turns.round()).max() < 1e-6
+
+
+@pytest.mark.parametrize("signs", [(1, 1), (-1, -1)])
+def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[int, int]) -> None:
+    one = np.array([0.5]), np.array([1.2]), 0.4, np.array([0.3]), signs
+    a, b, beta, rate = (float(x[0]) for x in nutating(*one))
+    start = (beta - b * math.cos(0.5)) / math.sin(0.5) ** 2
+    t = np.array([0.2, 0.4, 4.0])
+    theta, _, psi = angles(states_of(a, b, 0.5, 0.0, start)[np.newaxis], t)[:, 0]
+    assert theta == pytest.approx([1.2, 0.5, 0.5], abs=1e-7)
+    assert psi[2] / 4 == pytest.approx(rate, rel=1e-9)
 
 
 @pytest.mark.parametrize("count", [8, pytest.param(300, marks=pytest.mark.slow)])
@@ -73,7 +74,7 @@ def test_gaps_of_the_roots_have_all_digits(kind: str, count: int) -> None:
     """Against the roots of the cubic (4,9) in 60 digits, from the same doubles."""
     rng, errors = Random(f"gaps {kind}"), []
     for _ in range(count):
-        scene = nutating(kind, rng)
+        scene = hard_scene(kind, rng)
         motion, tilt = solve(Top(**scene)), math.radians(scene["theta0_deg"])
         rates = scene.get("thetadot0", 0.0), scene.get("psidot0", 0.0)
         state = states_of(motion.a, motion.b, tilt, *rates)

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
-from lagtop import fit, solve
-from machines import filtered, gimballed, unlike
-from noisy_recordings import DEGREE, TOP, axis_of, fitted, recording_from
-from scipy.spatial.transform import Rotation
+from engines import wxyz
+from lagtop import Top, fit, solve
+from machines import MACHINES, filtered
+from noisy_recordings import (
+    DEGREE,
+    TOP,
+    attitude_of,
+    fitted,
+    motion_of,
+    recorded,
+    recording_from,
+)
 
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.advice import Advice
@@ -21,19 +30,22 @@ from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.inverse.variations import Variations
 from lagrange_cli.names import ANGLES
 
-START = np.array([1.1, 0.3, 0.9])
 A, B, R0 = 80.0, 12.0, 20.0
-BOTH = ("theta", "psi")
+START = np.array([1.1, 0.3, 0.9])
+MACHINE = Top(m=1, s=1, g=A / 2, A=1, C=B / R0, r0=R0, theta0_deg=math.degrees(1.1)).replace(
+    thetadot0=0.3, psidot0=0.9
+)
+
+TEMPLATES = {x.words.partition("|")[0]: x.size for x in MACHINES.values() if x.motion}
+TEMPLATES |= {"bearing of the tilt": "nodes", "decay": "drag"}
 
 
 def seen(
-    *names: str, rows: int = 120, noise: float = 4e-3, seed: int = 4, **sizes: float
+    *names: str, rows: int = 120, noise: float = 0.23, seed: int = 4, **sizes: float
 ) -> tuple[Array, dict[str, Array]]:
     """Return times and noisy angles of a machine, by an integrator."""
-    t, rng = np.arange(rows) / 60, np.random.default_rng(seed)
-    move = unlike if sizes.keys() & {"moments", "beside"} else gimballed
-    found = move(A, B, R0, START, t, **sizes)
-    return t, {x: found[x] + rng.normal(scale=noise, size=rows) for x in names or BOTH}
+    names, t = names or ("theta", "psi"), np.arange(rows) / 60
+    return recorded(*names, top=MACHINE, t=t, noise=noise, seed=seed, sizes=sizes)
 
 
 def alone(t: Array, angles: dict[str, Array]) -> Outcome:
@@ -42,25 +54,13 @@ def alone(t: Array, angles: dict[str, Array]) -> Outcome:
     return best_fit(one, {}, frequency=frequency_of_parts(one))
 
 
-@pytest.mark.parametrize(
-    ("words", "size"),
-    [
-        ("stand", "stand"),
-        ("yoke", "yoke"),
-        ("decay", "drag"),
-        ("vertical bearing", "vertical"),
-        ("bearing of the tilt", "nodes"),
-        ("second torque", "magnet"),
-        ("off the axis", "beside"),
-        ("moments", "moments"),
-    ],
-)
+@pytest.mark.parametrize(("words", "size"), TEMPLATES.items())
 def test_a_template_is_the_change_of_the_motion(words: str, size: str) -> None:
     """Of machines by an integrator; in one direction at least."""
-    sizes: list[dict[str, Any]] = [{size: 1e-4}, {size: -1e-4}]
-    ends = [seen(*ANGLES, rows=180, noise=0.0, **x)[1] for x in sizes]
-    expected = np.stack([ends[0][x] - ends[1][x] for x in ANGLES]) / 2e-4
-    motion = Variations(np.array([A, B, *START]), R0 / B, np.arange(180) / 60)
+    t = np.arange(180) / 60
+    after, before = (motion_of(MACHINE, t, **{size: x}) for x in (1e-4, -1e-4))
+    expected = np.stack([after[x] - before[x] for x in ANGLES]) / 2e-4
+    motion = Variations(np.array([A, B, *START]), R0 / B, t)
     (changes,) = [x.changes for x in machines(motion) if words in x.name]
     ways = np.stack([x.ravel() for x in changes], axis=1)
     factors = np.linalg.lstsq(ways, expected.ravel(), rcond=None)[0]
@@ -69,31 +69,32 @@ def test_a_template_is_the_change_of_the_motion(words: str, size: str) -> None:
     assert np.linalg.norm(factors) == pytest.approx(1, abs=0.02)
 
 
-def test_a_decay_is_named_with_its_size() -> None:
+def test_machines_are_named_with_their_sizes() -> None:
+    """A body that is not round also if the spin is not recorded."""
     outcome = alone(*seen(rows=180, drag=0.05))
     assert "a decay of the spin by" in outcome.failure()
     shown = outcome.shown["a decay of the spin"]
     assert abs(shown.size - 0.05) < 4 * shown.std
-
-
-def test_a_clock_whose_rate_wanders_is_no_lost_row() -> None:
-    t = np.arange(120) / 60
-    exact = gimballed(A, B, R0, START, t + 0.05 / 3 * (np.sin(3 * t + 1) - np.sin(1)))
-    rng = np.random.default_rng(4)
-    found = alone(t, {x: exact[x] + rng.normal(scale=0.02, size=120) for x in BOTH}).neighbour
-    assert found.startswith("a clock whose rate wanders by "), found
-
-
-def test_a_body_that_is_not_round_is_named_with_a_spin_that_is_not_seen() -> None:
-    failure = alone(*seen(rows=180, noise=1e-3, beside=0.2)).failure()
+    failure = alone(*seen(rows=180, noise=0.06, beside=0.2)).failure()
     assert "a centre of mass off the axis by " in failure
     assert abs(float(failure.rpartition("if r0 = ")[2].split(";")[0]) - R0) < 1
 
 
-def test_a_jump_is_named() -> None:
+def test_a_clock_whose_rate_wanders_is_no_lost_row() -> None:
+    t = np.arange(120) / 60
+    late = t + 0.05 / 3 * (np.sin(3 * t + 1) - np.sin(1))
+    found = alone(t, recorded("theta", "psi", top=MACHINE, t=late, noise=1.1, seed=4)[1]).neighbour
+    assert found.startswith("a clock whose rate wanders by "), found
+
+
+def test_a_jump_is_named_and_reasons_are_in_the_order_of_their_kinds() -> None:
     t, angles = seen(*ANGLES)
-    jumped: dict[str, Any] = angles | {"psi": angles["psi"] + 0.1 * (t > 1.2)}
-    assert "a jump of psi by 5." in fit(t, **jumped).failure()
+    angles["psi"] += 0.1 * (t > 1.2)
+    assert "a jump of psi by 5." in fitted(t, angles).failure()
+    angles["theta"][30] += 1.0
+    kinds = [x.kind for x in alone(t, {x: angles[x] for x in ("theta", "psi")}).failed]
+    assert kinds == sorted(kinds)
+    assert len(kinds) > 1
 
 
 def test_an_honest_top_is_good_and_has_model_errors() -> None:
@@ -108,21 +109,29 @@ def test_an_honest_top_is_good_and_has_model_errors() -> None:
 
 def test_a_model_error_holds_a_stand_that_is_not_seen() -> None:
     """The error of a small nutation in a stand of 3 % of A is three times that of 1 %."""
-    t = np.linspace(0, 1.2, 120)
-    a, b, start = 120.0, 30.0, np.array([1.2, 0.0, 2.2])
-    exact = gimballed(a, b, 50, start, t, stand=0.03)
-    noise = np.random.default_rng(5).normal(scale=5e-4, size=(2, t.size))
-    outcome = fit(t, theta=exact["theta"] + noise[0], psi=exact["psi"] + noise[1])
+    top = Top(m=1, s=1, g=60, A=1, C=0.6, r0=50, theta0_deg=1.2 / DEGREE, psidot0=2.2)
+    outcome = fitted(
+        *recorded(
+            "theta",
+            "psi",
+            top=top,
+            rows=120,
+            seconds=1.2,
+            noise=0.03,
+            seed=5,
+            sizes={"stand": 0.03},
+        )
+    )
     assert outcome.verdict == "good"
     found = outcome.numbers["a"]
-    off = abs(found.value / a - 1)
-    assert off > 5 * found.std / a
-    assert off < 3 * outcome.model_errors["a"] + 2 * found.std / a
+    off = abs(found.value / 120 - 1)
+    assert off > 5 * found.std / 120
+    assert off < 3 * outcome.model_errors["a"] + 2 * found.std / 120
 
 
 def test_rows_that_may_be_lost_are_in_the_model_error() -> None:
     """Two rows of 63 are too few to be sure of."""
-    t, angles = seen(rows=65, noise=0.05, seed=3)
+    t, angles = seen(rows=65, noise=2.9, seed=3)
     one = fitted(t[:63], {x: np.delete(y, [30, 31]) for x, y in angles.items()})
     off = abs(one.numbers["a"].value - A)
     model = one.model_errors.get("a", 0.0) * A
@@ -130,15 +139,14 @@ def test_rows_that_may_be_lost_are_in_the_model_error() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "rows", "tilt", "rate"), [("quaternion", 70, 75, 0), ("axis", 500, 55, 2)]
+    ("kind", "rows", "start"),
+    [("quaternion", 70, {}), ("axis", 500, {"theta0_deg": 55, "psidot0": 2})],
 )
-def test_rounding_errors_show_no_neighbour(kind: str, rows: int, tilt: float, rate: float) -> None:
+def test_rounding_errors_show_no_neighbour(kind: str, rows: int, start: dict[str, float]) -> None:
     """A motion without noise is not one with a jump of 1e-13 degrees."""
     t = np.linspace(0, 1.2, rows)
-    theta, phi, psi = solve(TOP.replace(theta0_deg=tilt, psidot0=rate)).angles(t)
-    turns = Rotation.from_euler("ZXZ", np.stack([psi, theta, phi], axis=1))
-    found = {"quaternion": turns.as_quat(scalar_first=True), "axis": axis_of(theta, psi)}
-    outcome = fitted(t, {kind: found[kind]})
+    columns = solve(TOP.replace(**start)).table(t, [kind])
+    outcome = fitted(t, {kind: np.stack([*columns.values()], axis=1)})
     assert outcome.verdict == "good", outcome.failures()
     assert outcome.model_errors
 
@@ -173,35 +181,20 @@ def test_lost_rows_are_found(lost: int) -> None:
 def test_a_late_filter_is_in_the_uncertainty_of_the_first_row() -> None:
     """Noise alone would leave theta0 uncertain by 0.03 degrees; the delay moves it by 2."""
     t, angles = seen(rows=240, seed=9)
-    late = {x: filtered(y, 3, "lag")[24:] for x, y in angles.items()}  # the filter has settled
-    exact = gimballed(A, B, R0, START, t)["theta"][24] / DEGREE
+    late = {x: filtered(np.unwrap(y), 3, "lag")[24:] for x, y in angles.items()}  # it has settled
+    exact = motion_of(MACHINE, t)["theta"][24] / DEGREE
     outcome = fitted(t[24:], late)
     assert outcome.verdict == "good", outcome.failures()
     theta0 = outcome.numbers["theta0_deg"]
     assert 1 < abs(exact - theta0.value) < 3 * theta0.std < 10
 
 
-def test_a_quaternion_whose_components_are_smoothed_is_named() -> None:
+def test_a_quaternion_that_is_smoothed_is_named_and_one_of_length_0_is_missing() -> None:
+    """Trackers write zeros while they do not see the top."""
     t, angles = seen(*ANGLES, rows=240)
-    turns = Rotation.from_euler("ZXZ", np.stack([angles[x] for x in ("psi", "theta", "phi")], 1))
-    parts = turns.as_quat(scalar_first=True)[::4]
-    said = fit(t[::4], quaternion=np.apply_along_axis(filtered, 0, parts, 5, "mean")).failure()
+    quaternion: Any = wxyz(attitude_of(angles))
+    smooth = np.apply_along_axis(filtered, 0, quaternion[::4], 5, "mean")
+    said = fit(t[::4], quaternion=smooth).failure()
     assert said.startswith("the length of the quaternion varies from 0."), said
-
-
-def test_a_quaternion_of_length_0_is_a_missing_number() -> None:
-    """Trackers write it while they do not see the top."""
-    t, angles = seen(*ANGLES, rows=240)
-    turns = Rotation.from_euler("ZXZ", np.stack([angles[x] for x in ("psi", "theta", "phi")], 1))
-    quaternion = turns.as_quat(scalar_first=True)
     quaternion[100:103] = 0
     assert fit(t, quaternion=quaternion).verdict == "good"
-
-
-def test_reasons_are_in_the_order_of_their_kinds() -> None:
-    t, angles = seen()
-    angles["theta"][30] += 1.0
-    outcome = alone(t, angles | {"psi": angles["psi"] + 0.5 * (t > 1)})
-    kinds = [x.kind for x in outcome.failed]
-    assert kinds == sorted(kinds)
-    assert len(kinds) > 1

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
+import recordings
 from conftest import Lagtop
 from lagtop import Top, compare, fit, solve
 from pyarrow import parquet
@@ -36,41 +37,6 @@ TURNS = Rotation.from_quat(QUATERNION, scalar_first=True)
 def read(path: Path, content: str, columns: list[str] | None = None, **options: Any) -> Recording:
     (path / "file").write_text(content, "utf-8")
     return read_recording(str(path / "file"), Reading.of(columns=columns, **options))
-
-
-@pytest.mark.parametrize(
-    ("heading", "cells", "said"),
-    [
-        ("time", ["23:59:58", "23:59:58.5", "24:00:01"], "a clock (from 0 in the first row)"),
-        ("time", ["01:02,5", "01:03", "01:05,500"], "a clock (from 0 in the first row)"),
-        (
-            "timestamp",
-            ["2024-02-29T23:59:59.75Z", "2024-03-01 00:00:00.25", "2024-03-01T01:00:02.75+01:00"],
-            "a clock (from 0 in the first row)",
-        ),
-        ("stamp.sec;stamp.nanosec", ["7;900000000", "8;400000000", "10;900000000"], "nanoseconds"),
-        ("secs;nsecs", ["7;9e8", "8;4e8", "10;9e8"], "seconds and nanoseconds"),
-        ("time", [f"1700000000{x}000001" for x in ("000", "500", "+++")], "ns since 1970 (from 0"),
-        ("timestamp_ms", [f"170000000{x}" for x in ("0000", "0500", "3000")], "ms since 1970"),
-        ("time (µsec)", ["0", "5e5", "3e6"], "in us"),
-        ("t_ms", ["0", "500", "3000"], "in ms"),
-        ("Elapsed Time (nanoseconds)", ["0", "5e8", "3e9"], "in ns"),
-        ("seconds_elapsed", ["0.0", "5D-1", "3D0"], "in units of the recording"),
-    ],
-)
-def test_times_as_clocks_write_them(
-    heading: str, cells: list[str], said: str, tmp_path: Path
-) -> None:
-    """The last one is 3 s after the first; 1e-9 s beside 1.7e18 ns are kept."""
-    if cells[-1].startswith("1700000000+"):
-        cells = ["1700000000000000001", "1700000000500000001", "1700000003000000001"]
-    rows = [f"{x};{i}" for i, x in enumerate(cells)]
-    found = read(tmp_path, "\n".join([f"{heading};theta", *rows]))
-    assert found.t.tolist() == pytest.approx([0, 0.5, 3], abs=1e-12)
-    assert said in found.source.lines[0]
-    if "clock" in said:
-        with pytest.raises(DataError, match=r"line 5: the time must be like 13:05:00\.25 or 2024-"):
-            read(tmp_path, "\n".join([f"{heading};theta", *rows, "noon;4"]))
 
 
 LISTS: dict[str, Any] = {"t": [0, 1], "q": [[1, 0, 0, 0], [0.8, 0.6, 0, 0]]}
@@ -205,6 +171,20 @@ def test_a_pivot_is_named_only_where_it_is_determined() -> None:
     assert pivot.is_determined.tolist() == [True, True, False]
     assert str(pivot).startswith("x = 3.0")
     assert "z" not in str(pivot)
+    top = Top(m=0.5, A=4.45e-3, C=2.5e-3, s=0.08, g=9.81, r0=52.36, theta0_deg=75)
+    marker = 0.15 * np.stack([*solve(top).table(T, ["axis"]).values()], axis=1)
+    marker += np.random.default_rng(19).normal(scale=1e-3, size=marker.shape)
+    for offset in ((0, 0, 0.05), (0.02, 0, 0)):
+        found = pivot_of(marker + offset)
+        assert found
+        assert (abs(found.at - offset) < 4 * found.std).all()
+        assert found.std.max() < 0.005
+    assert pivot_of(marker) is None
+
+
+def test_the_samples_are_what_the_script_writes() -> None:
+    for camera in (recordings.SMALL_TOP, recordings.WHEEL):
+        assert recordings.text(camera) == (recordings.SAMPLES / camera.name).read_text()
 
 
 def test_every_name_that_table_writes_is_read(tmp_path: Path, lagtop: Lagtop) -> None:

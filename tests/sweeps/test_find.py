@@ -131,23 +131,6 @@ def test_a_leap_is_no_root() -> None:
     assert float(exact) == pytest.approx(-11.5)
 
 
-@pytest.mark.parametrize(
-    ("condition", "kept"),
-    [
-        ("theta_max<100", [1]),
-        ("theta_max_deg>=100", [0]),
-        ("path=cusped", [0, 1]),
-        ("regime=regular", [0, 1]),
-        ("r0<={}", [0, 1]),
-        ("r0>42.41", []),
-    ],
-)
-def test_words_and_bounds(condition: str, kept: list[int]) -> None:
-    both = find(["T_nutation=0.45"], r0="10:60")
-    condition = condition.format(both[1].top.r0)
-    assert find(["T_nutation=0.45", condition], r0="10:60") == [both[i] for i in kept]
-
-
 def test_a_target_whose_square_underflows() -> None:
     """Residuals of -1e-323 are no roots, however small their products are."""
     assert find({"u1": 1e-323}, theta0_deg=90, psidot0=(-5, 5), scan=300) == []
