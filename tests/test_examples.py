@@ -141,14 +141,14 @@ def read(text: str, *columns: str) -> str:
 def said_of(*errors: float) -> str:
     """Return what is said of errors that grow over a second, at steps of 4, 2 and 1 ms."""
     t = np.linspace(0, 1, 201)
-    runs = [(x, t, y * t) for x, y in zip((4e-3, 2e-3, 1e-3), errors, strict=True)]
-    found = convergence(runs, 0.1)
+    steps = (4e-3, 2e-3, 1e-3)
+    found = convergence([(x, t, y * t) for x, y in zip(steps, errors, strict=True)], 0.1)
     return f"{found.sentence} {found.converges}" if found else ""
 
 
 def tops_found(*conditions: str) -> list[float]:
     """Return r0 of the tops with the nutation period 0.45 and other conditions."""
-    return [round(x.top.r0, 6) for x in find(["T_nutation=0.45", *conditions], r0="10:60")]
+    return [round(float(x.top.r0), 6) for x in find(["T_nutation=0.45", *conditions], r0="10:60")]
 
 
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
