@@ -97,7 +97,8 @@ def install(extra: str) -> str:
 def check_type(name: str, value: object, *kinds: type) -> None:
     """Raise TypeError for an argument of any other type."""
     if not isinstance(value, kinds):
-        wanted = " or ".join(kind.__name__ for kind in kinds)
+        words = {"Integral": "whole number", "NoneType": "None"}
+        wanted = " or ".join(words.get(x.__name__, x.__name__) for x in kinds)
         raise TypeError(f"{name} must be a {wanted}, got {type(value).__name__}")
 
 

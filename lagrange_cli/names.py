@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from .arithmetic.text import quoted
@@ -42,10 +42,10 @@ def split_names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",")]
 
 
-def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[str]:
+def check_names(key: str, names: Iterable[str], known: Iterable[str]) -> list[str]:
     """Return the names of the argument `key` as a list.
 
-    Raises LagtopError for anything but a sequence of texts, for an empty sequence, and for an
+    Raises LagtopError for anything but an iterable of texts, for an empty one, and for an
     unknown or repeated name.  The message suggests the name that was probably meant and lists known
     names.
     """

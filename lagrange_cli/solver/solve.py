@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Collection, Sequence
+from numbers import Integral
+from types import NoneType
 from typing import TYPE_CHECKING, Any
 
-from ..errors import LagtopError, OutOfRangeWarning
+from ..errors import LagtopError, OutOfRangeWarning, check_type
 from ..names import ANGLES, check_names
 from ..top.top import Top
 from ..top.units import Units
@@ -106,7 +108,10 @@ class Motion(Solution):
         """
         units = Units(radians)
         if keys is not None:
-            keys = check_names("keys", list(keys), all_keys(units))
+            keys = check_names("keys", keys, all_keys(units))
+        check_type("digits", digits, Integral, NoneType)
+        if digits is not None and digits < 1:
+            raise LagtopError(f"digits must be at least 1, got {digits}", "digits")
         record, beyond = record_in_range(self, digits=digits, radii=radii, units=units, keys=keys)
         if beyond and keys is not None:
             raise beyond[0]

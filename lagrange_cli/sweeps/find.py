@@ -410,7 +410,7 @@ def find(
         for name, x in inputs.items()
         if x is not None
     }
-    texts = conditions
+    texts: Iterable[str] = [conditions] if isinstance(conditions, str) else conditions
     if isinstance(conditions, Mapping):
         texts = [f"{key}={_text(key, x)}" for key, x in conditions.items()]
     search, found = search_of(given, list(texts), None, Units(radians))
