@@ -215,30 +215,31 @@ class Advice:
             yield f"the nutation is aliased, with {rows:.3g} rows per period: record more than two"
 
     def _parts(self) -> Iterator[str]:
-        """Yield the rows without which the fit is good: outliers, and those before a release."""
+        """Yield the rows without which the fit is good: those before a release, and outliers."""
         recording, found = self.recording, self.outcome
         if self.kinds == {Kind.MACHINE}:
             return
+        if row := release(recording):
+            free = recording.part(slice(row, None))
+            if self._is_good(free):
+                held = f"the top is held until about t = {free.t_start:.4g}"
+                yield f"{held}: leave out the rows before the release"
         kept = np.ones(recording.t.size, bool)
         for _ in range(_ROUNDS):
             far = [x.t[x.beyond(_LEAVES)] for x in found.residuals.values()]
             wrong = np.isin(found.recording.t, np.concatenate(far))
             kept[np.flatnonzero(kept)[wrong]] = False
             if not wrong.any() or np.mean(kept) < 1 - _FEW:
-                break
-            found = self._fit(recording.rows(kept)) or found
-            if self._is_better(found):
+                return
+            if not (others := self._fit(recording.rows(kept))):
+                return
+            if self._is_better(found := others):
                 rows, t = np.flatnonzero(~kept), recording.t_start + recording.t
                 runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
                 ends = [dict.fromkeys(t[[x[0], x[-1]]].tolist()) for x in runs]
                 shown = ", ".join(" to ".join(f"{y:.6g}" for y in x) for x in ends)
                 yield f"leave out the rows at t = {shortened(shown)}"
-                break
-        if row := release(recording):
-            free = recording.part(slice(row, None))
-            if self._is_good(free):
-                held = f"the top is held until about t = {free.t_start:.4g}"
-                yield f"{held}: leave out the rows before the release"
+                return
 
     def _windows(self) -> Iterator[Reason]:
         """Yield the least number of windows that are all good and show a decay.

@@ -176,10 +176,9 @@ def wander(x: Variations) -> Neighbour:
 
 
 def lost_text(recording: Measured, row: int, size: float) -> str:
-    """Return how many rows are lost before a row, or doubled if the number is below 0."""
-    count, how = max(round(abs(size)), 1), "doubled at" if size < 0 else "lost before"
-    at = recording.t_start + float(recording.t[row])
-    return f"{count} row{'s are' if count > 1 else ' is'} {how} t = {at:.6g}"
+    """Return how many rows are lost before a row, at least one."""
+    count, at = max(round(size), 1), recording.t_start + float(recording.t[row])
+    return f"{count} row{'s are' if count > 1 else ' is'} lost before t = {at:.6g}"
 
 
 class Finding:
@@ -232,7 +231,7 @@ class Finding:
         size = abs(self.size)
         is_possible = size < most and (self.size > 0 or not self.one.is_positive)
         if self.one.name == LOST:
-            is_possible = size > 0.5 and abs(size - round(size)) < max(3 * self.std, 0.1)
+            is_possible = self.size > 0.5 and abs(size - round(size)) < max(3 * self.std, 0.1)
         if self.one.is_square and math.sqrt(size) * self.fit.period > self.fit.recording.frame:
             is_possible &= not all(x.is_white for x in self.rests)  # it smooths the noise, too
         is_far = any(x.is_large or x.outliers.any() for x in self.rests)
@@ -440,9 +439,9 @@ class Neighbours:
 
     @cached_property
     def late(self) -> Finding | None:
-        """Rows that may be lost or doubled, which a fit with a gap decides."""
+        """Rows that may be lost, which a fit with a gap decides."""
         found = self.steps[-1]
-        is_hinted = found.sigmas > _MAYBE and found.effect > 1 and abs(found.size) > 0.5
+        is_hinted = found.sigmas > _MAYBE and found.effect > 1 and found.size > 0.5
         return found if is_hinted and not found.is_shown else None
 
     @property
