@@ -277,8 +277,13 @@ def top(
 
 
 def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
-    """Raise LagtopError for a word that is no file but a unit, or an input with its value."""
-    if not word or not word[0].isalpha() or set(word) & set("-.") or os.path.exists(word):
+    """Raise LagtopError for a word that is no file but a number, a unit, or an input with both."""
+    if not word or os.path.exists(word):
+        return
+    if is_decimal(word):
+        wrong = f"an option takes one value, and {word} is no file"
+        raise LagtopError(f"{wrong}: write a list for sweep with commas, as in --r0 40,50")
+    if not word[0].isalpha() or set(word) & set("-."):
         return
     name, _, value = word.partition("=")
     if name in DECLARED and is_decimal(value):
