@@ -6,7 +6,6 @@ import json
 import math
 import random
 import re
-from pathlib import Path
 
 import pytest
 from conftest import Lagtop, Solved, dicts
@@ -105,13 +104,6 @@ def test_budgets_name_units(lagtop: Lagtop, solved: Solved) -> None:
     assert found["units"] == {"T_nutation": "s", "m": "kg", "psidot0": "rad/s"}
     plain = solved("--m", "9(1)", "--budget", "a")
     assert "units" not in plain
-
-
-def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: Path) -> None:
-    scene = tmp_path / "top.toml"
-    scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
-    assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
-    assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
 
 
 def test_random_tops_have_about_the_same_uncertainties(lagtop: Lagtop) -> None:

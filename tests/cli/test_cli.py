@@ -147,14 +147,6 @@ def test_a_grid_of_times_has_a_hundred_steps(lagtop: Lagtop) -> None:
         assert [row[0] for row in rows(text)] == pytest.approx([i / 100 for i in range(101)])
 
 
-def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Path) -> None:
-    text = "# times\n0.3\n\n  -1e2 \n0.1\n"
-    (tmp_path / "t.txt").write_text(text)
-    from_file = lagtop("table", "--times", tmp_path / "t.txt").stdout
-    assert from_file == lagtop("table", "--times", "-", input=text).stdout
-    assert [row[0] for row in rows(from_file)] == [0.3, -100, 0.1]
-
-
 @pytest.mark.parametrize("fmt", ["csv", "ndjson"])
 def test_the_record_of_a_steady_top_is_a_file_of_tops(fmt: str, lagtop: Lagtop) -> None:
     record = lagtop("solve", "--r0", "60", "--psidot0", "steady", "--format", fmt).stdout
@@ -236,7 +228,3 @@ def test_the_help_lists_the_exit_code_of_every_error(lagtop: Lagtop) -> None:
     listed = re.findall(r"(?m)^    (\d+)  +\S", lagtop("--help").stdout)
     kinds = [x for x in vars(errors).values() if isinstance(x, type) and hasattr(x, "exit_code")]
     assert {*listed} == {"0", "70"} | {str(kind.exit_code) for kind in kinds}
-
-
-def test_version(lagtop: Lagtop) -> None:
-    assert lagtop("--version").stdout == "lagtop, version 0.1.0\n"

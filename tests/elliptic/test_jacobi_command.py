@@ -57,11 +57,6 @@ def test_poles_and_zeros_of_complex_numbers(digits: str, lagtop: Lagtop) -> None
     assert (found["sn_re"][0], found["pi01_im"][0], found["sn_re"][3]) == ("0.0", "0.0", "0.0")
 
 
-@pytest.mark.parametrize("options", ["--k 0 --u 1e19i", "--k 1 --u 1e19+0.5i", "--k 1 --u 1e19"])
-def test_sizes_beyond_decimals_are_0_or_empty_cells(options: str, lagtop: Lagtop) -> None:
-    assert lagtop("jacobi", *options.split()).exit_code == 0
-
-
 def test_the_constants_of_a_complex_modulus_have_parts(lagtop: Lagtop) -> None:
     assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
 

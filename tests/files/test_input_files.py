@@ -112,26 +112,7 @@ def test_json_of_many_levels_is_refused(command: str, levels: int, lagtop: Lagto
             assert (result.exit_code, result.stderr.count("\n")) == (65, 1), result.stderr
 
 
-def test_units_in_a_row_below_the_headings(lagtop: Lagtop) -> None:
-    """Cells without a unit are empty or -; a row with another word is no such row."""
-    for text in ("id;r0;theta0\n;rpm;deg\n1;300;30\n", "id r0 theta0\n- [rpm] [rad]\n1 300 0.5\n"):
-        done = lagtop("sweep", "-", "--keys", "r0,theta0_deg", input=text)
-        tilt = 30.0 if "deg" in text else math.degrees(0.5)
-        assert done.stdout.splitlines()[1] == f"1,{10 * math.pi},{tilt},"
-    assert lagtop("compare", "-", input="t,theta\ns,soon\n0,30\n1,31\n").exit_code == 65
-
-
 def test_rows_of_json_are_as_long_as_their_names(lagtop: Lagtop) -> None:
     for names, said in (("r0", "row 1: a row must have 1 cells"), ("r0 r0", "each column once")):
         text = json.dumps({"columns": names.split(), "data": [[1, 2]]})
         assert said in lagtop("sweep", "-", input=text).stderr
-
-
-def test_columns_of_text_in_json_are_columns(lagtop: Lagtop) -> None:
-    """Beside columns of numbers, as pandas writes them."""
-    content = json.dumps({"id": ["a", "b"], "r0": {"0": "50", "1": "60"}, "theta0_deg": [10, 20]})
-    found = lagtop("sweep", "-", "--keys", "r0", input=content).stdout
-    assert found.splitlines() == ["id,r0,error", "a,50.0,", "b,60.0,"]
-    longer = lagtop("sweep", "-", input='{"r0": ["50", "60", "70"], "theta0_deg": [1, 2]}')
-    said = 'columns must be equally long, got {"r0": 3, "theta0_deg": 2}'
-    assert (longer.exit_code, longer.stdout, said in longer.stderr) == (65, "", True)

@@ -131,17 +131,6 @@ def test_a_leap_is_no_root() -> None:
     assert float(exact) == pytest.approx(-11.5)
 
 
-def test_a_target_whose_square_underflows() -> None:
-    """Residuals of -1e-323 are no roots, however small their products are."""
-    assert find({"u1": 1e-323}, theta0_deg=90, psidot0=(-5, 5), scan=300) == []
-
-
-def test_a_tilt_may_be_in_radians() -> None:
-    wanted = solve(Top(theta0_rad=0.5)).theta_max_deg
-    (found,) = find({"theta_max": math.radians(wanted)}, theta0_rad=(0.1, 1), radians=True)
-    assert found.top.theta0_rad == pytest.approx(0.5, rel=1e-13)
-
-
 def test_a_warning_names_the_defaults_of_the_body() -> None:
     with pytest.warns(MixedBodyWarning, match="A, C, s and g default to the worked") as said:
         find(["T_nutation=0.45"], m=1600, r0="10:60", scan=20)
@@ -168,14 +157,6 @@ def test_conditions_with_units(united: str, plain: str, lagtop: Lagtop) -> None:
     assert rates[0] == pytest.approx(rates[1], rel=1e-13)
 
 
-def test_texts_with_units() -> None:
-    body: Any = {"m": "1587 g", "A": "39032 g cm^2", "C": "17458 g cm^2", "s": "4 cm"}
-    body |= {"g": "981 cm/s^2"}
-    (found,) = find({"T_precession": "2000 ms"}, r0="100:1900 rpm", scan=100, **body)
-    (plain,) = find({"T_precession": 2}, r0=(10, 200), scan=100)
-    assert (found.top.r0, found.top.m) == pytest.approx((plain.top.r0, 1.587), rel=1e-12)
-
-
 def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
     options = ("find", "--r0", "10:60", "T_nutation=0.45", "--scan", 300)
     result = lagtop(*options)
@@ -197,8 +178,3 @@ def test_a_double_root_of_two_unknowns_is_printed(lagtop: Lagtop) -> None:
     assert (r0, psidot0) == pytest.approx((59.9463, 0), abs=1e-4)
     assert not others
     assert "two solutions coincide at r0 = 59.9463" in result.stderr
-
-
-def test_a_border_at_0_is_0(lagtop: Lagtop) -> None:
-    found = lagtop("find", "--psidot0=-8:8", "path=looping", "--keys", "psidot0").stdout
-    assert "0.0" in found.splitlines()

@@ -19,20 +19,6 @@ from lagrange_cli.top.ranges import EvenPoints
 from lagrange_cli.top.values import parse_values
 
 
-@pytest.mark.parametrize(
-    ("inputs", "key"),
-    [
-        ({"A": 1}, "C"),
-        ({"A_cm": 0, "s": 0}, "A"),
-        ({"phidot0": 1, "theta0_deg": 1e99}, "theta0_deg"),
-    ],
-)
-def test_the_input_that_is_refused(inputs: dict[str, Any], key: str) -> None:
-    with pytest.raises(LagtopError) as refused:
-        Top(**inputs)
-    assert refused.value.key == key
-
-
 @pytest.mark.parametrize("make", [Top, Top().replace])
 def test_an_unknown_input_is_refused(make: Any) -> None:
     with pytest.raises(TypeError, match="theta0_deg"):
