@@ -111,7 +111,7 @@ function factsOf(scene, u0) {
 }
 
 /** The mean precession by the midpoint rule over the amplitude, and a bound of its relative error. */
-function meanPrecession({ toTop, fromLow, top, high, foot, gap, along, b }) {
+function meanPrecession({ toTop, fromLow, top, foot, gap, along, b }) {
   const band = toTop + fromLow;
   function meanOf(n) {
     let [sum, size, weights] = [0, 0, 0];
@@ -205,7 +205,7 @@ export function motionOf(scene) {
   const period = isStill || separatrix ? null : cycle;
   const sum = { mean: plusRate + minusRate, loss: 0 };
   sum.loss = (1e-14 * (Math.abs(plusRate) + Math.abs(minusRate))) / Math.abs(sum.mean);
-  const other = meanPrecession({ toTop, fromLow, top, high, foot, gap, along, b });
+  const other = meanPrecession({ toTop, fromLow, top, foot, gap, along, b });
   const turn = sum.loss < other.loss || period === null || facts.overTop || facts.overBottom ? sum : other;
   const isIdle = isStill && !vertical;
   // Without torque the sum or the difference of both rates is 0; over both poles each is one turn per period.
@@ -236,7 +236,6 @@ export function motionOf(scene) {
   let regime = separatrix ? "separatrix" : "regular";
   if (vertical) regime = tilt ? "hanging" : "sleeping";
   return {
-    scene,
     angles,
     span: period ?? 20 * usual,
     doubt: isStill ? undefined : Object.keys(doubts).find((each) => doubts[each]),
