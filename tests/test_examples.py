@@ -23,6 +23,7 @@ import pint
 import pytest
 from click.testing import CliRunner, Result
 from lagtop import LagtopError, Top, find, sensitivities, solve
+from recordings import SAMPLES
 from scenes import UNIT
 from uncertainties import ufloat
 
@@ -32,6 +33,7 @@ from lagrange_cli.cli.app import main
 from lagrange_cli.comparison.convergence import convergence
 from lagrange_cli.elliptic.arguments import parse_arguments
 from lagrange_cli.files.headings import name_and_unit
+from lagrange_cli.inverse.known import compared
 from lagrange_cli.names import check_names
 from lagrange_cli.recordings.options import Reading
 from lagrange_cli.recordings.quantities import quantities_in
@@ -156,7 +158,7 @@ NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fr
 NAMES |= {
     x.__name__: x for x in (sentence, unit, numbers, digits, regimes, row, derivative, uncertain)
 }
-NAMES |= {x.__name__: x for x in (read, said_of, tops_found)}
+NAMES |= {x.__name__: x for x in (read, said_of, tops_found, compared)}
 NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 
@@ -205,7 +207,7 @@ def filled(folder: Path) -> Path:
     (folder / "loop").symlink_to("loop")
     for name, content in FILES.items():
         (folder / name).write_bytes(content)
-    for path in PAGES.glob("*.csv"):
+    for path in [*PAGES.glob("*.csv"), SAMPLES / "tutorials" / "wheel.csv"]:
         shutil.copy(path, folder)
     return folder
 

@@ -98,12 +98,6 @@ def test_a_release_is_seen_beside_missing_cells() -> None:
     assert release(recording_from(t, **seen)) == 0  # psi' is 0 in the first row
 
 
-def test_a_tilt_that_stays_at_a_pole_is_no_top() -> None:
-    t, rng = np.linspace(0, 3, 90), np.random.default_rng(5)
-    swing = np.abs(0.02 * np.sin(9 * t)) + np.abs(rng.normal(scale=0.02, size=90))
-    assert fit(t, theta=swing, phi=3 * t, psi=2 * np.sin(9 * t)).verdict == "failed"
-
-
 def test_an_impossible_body_fails() -> None:
     """At uneven times, because whole turns per frame are invisible."""
     uneven = np.sort(np.random.default_rng(8).uniform(0, 0.9, 60))

@@ -136,8 +136,7 @@ def test_noise_of_many_rows_is_averaged() -> None:
 
 
 def test_any_unit_of_time() -> None:
-    t, seen = recorded("theta", "psi", seed=8)
-    scale = 1e-9
+    (t, seen), scale = recorded("theta", "psi", seed=8), 1e-9
     one, other = fitted(t, seen), fitted(t / scale, seen)
     assert other.verdict == "good"
     assert other.frequency / scale == pytest.approx(one.frequency, rel=1e-6)

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import recordings
 from conftest import Lagtop
 from engines import Array
 from lagtop import read_scene
@@ -70,15 +69,6 @@ def test_a_failed_fit_writes_no_scene_and_marks_what_is_not_determined(
     assert outcome.is_open  # another top explains it as well
     rows = fit_report([outcome], "data", "").rows
     assert all(x.meaning.startswith("not determined: ") for x in rows)
-
-
-@pytest.mark.slow
-def test_exchanged_angles_that_fit_nearly_as_well_are_noticed(lagtop: Lagtop) -> None:
-    """Residuals are 1.2 times the noise, and a wrong scale of psi of -21 % would explain them."""
-    path = recordings.SAMPLES / "tutorials" / "wheel.csv"
-    words = "--columns t,theta,phi,psi --m 2.04 --s 0.152 --g 9.81".split()
-    said = "phi and psi are exchanged: here phi is the spin and psi the"
-    assert said in lagtop("fit", path, *words).stderr
 
 
 def test_windows(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -146,5 +146,7 @@ def test_a_tilt_that_swings_or_drifts_is_not_steady() -> None:
     few = fit(t[:20], theta=theta[:20], psi=2 * t[:20] + theta[:20])
     assert few.failures()[-1].startswith("20 rows are too few to tell nutation from noise")
     assert few.hints == []  # no column is wrong
+    swing = np.abs(0.02 * np.sin(9 * t)) + np.abs(rng.normal(scale=0.02, size=100))
+    assert fit(t, theta=swing, phi=9 * t, psi=2 * np.sin(27 * t)).verdict == "failed"  # at a pole
     still = fit(t, theta=np.full(100, 0.7), psi=np.full(100, 0.2))
     assert "the precession rate is not determined" in still.failure()
