@@ -53,6 +53,8 @@ _COMPARABLE = 2.0
 """Factor of the least chi^2 beyond which an end is dropped."""
 _LIKELY = 16.0
 """Difference of -2 log(likelihood) below which two tops explain a recording equally well."""
+_OPEN = 1 / 8
+"""Turns of the spin per row from which psi may count in either direction."""
 _NEAREST = 3.0
 """Distance from a pole, over the noise of the tilt, in which spin and precession are not seen."""
 _Noise = Mapping[str, Noise]
@@ -147,7 +149,7 @@ def _directed(
     """
     plain = _nutation(recording, known, frequency, noise, asked)
     is_sure = recording.kind != "angles" or not {"psi", "phi"} <= recording.angles.keys()
-    if is_sure or not plain or (plain.is_spin_slow and not any(plain.wrong())):
+    if is_sure or not plain or (plain.turns < _OPEN and not any(plain.wrong())):
         return plain
     image = _nutation(recording.mirrored, known, frequency, noise, asked)
     gain = plain.deviance(image) if image else -math.inf
@@ -165,7 +167,8 @@ def _directed(
         notes.insert(0, reversed_note(other.turns * is_alike))
     elif not best.is_spin_slow:
         notes.insert(0, unsure_note(other.turns))
-    if is_alike and other.turns < FASTER * best.turns and best.differs(other):
+    is_open = other.turns < FASTER * best.turns or min(best.turns, other.turns) >= _OPEN
+    if is_alike and is_open and best.differs(other):
         reasons.append(_another_top({x: y.value for x, y in other.in_radians.items()}))
     return replace(best, notes=notes, reasons=reasons)
 
