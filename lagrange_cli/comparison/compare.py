@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import DataError, LagtopError, check_type, joined
+from ..errors import DataError, LagtopError, OutOfRangeError, check_type, joined
 from ..file_bytes import shown_path
 from ..names import ANGLES
 from ..output.notebook import HasRecord
@@ -181,6 +181,8 @@ def compared(
     """
     if not limit >= LEAST_LIMIT:
         raise LagtopError(f"max_error must be at least {LEAST_LIMIT:g}, got {limit}", "max_error")
+    if not motion.sampler().is_ordinary:  # the search for causes would take minutes
+        raise OutOfRangeError("numbers of this top are too large or too small: choose other units")
     if step_sizes and (len(step_sizes) != len(runs) or not all(x > 0 for x in step_sizes)):
         wanted = f"one number > 0 per trajectory ({len(runs)})"
         raise LagtopError(f"step_sizes must have {wanted}, got {step_sizes}", "step_sizes")
