@@ -50,7 +50,7 @@ _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\[\]()]*[\])])*')
 _PLAIN = dict.fromkeys(map(ord, "()[]"))
 EXPONENT = str.maketrans("dD", "ee")
 _FORTRAN = re.compile(r"(?<=[\d.])D(?=[+-]?\d)")
-_MISSING = {None, "", "NA", "N/A", "#N/A", "NULL", "null", "None", "-"}
+_MISSING = {"", "NA", "N/A", "#N/A", "NULL", "null", "None", "-"}
 """Cells that are empty, as programs write them."""
 CountKnown = Callable[[Sequence[str]], int]
 """Returns the number of known headings in a row, which distinguishes headings from titles."""
@@ -203,7 +203,7 @@ class Table:
         values, empty, lines = array("d"), bytearray(), array("q")
         for number, cells in self._checked_rows():
             lines.append(number)
-            empty.extend(cells[i] in _MISSING for i in columns)
+            empty.extend(_is_missing(cells[i]) for i in columns)
             values.extend(self._double(number, i, names[i], cells[i]) for i in columns)
         shape = (len(lines), len(columns))
         mask = np.frombuffer(empty, np.bool_).reshape(shape)
@@ -211,7 +211,7 @@ class Table:
 
     def _double(self, row: int, column: int, name: str, cell: Any) -> float:
         """Return the number in a cell, NaN if it is empty.  Raises DataError."""
-        if cell in _MISSING:
+        if _is_missing(cell):
             return float("nan")
         if type(cell) in {int, float}:
             return float(cell)
@@ -426,6 +426,10 @@ def _splits(text: str, decimal: str = "") -> dict[str, list[str]]:
 
 def _are_numbers(cells: Sequence[str]) -> bool:
     return any(cells) and all(_NUMBER.fullmatch(x) for x in cells if x not in _MISSING)
+
+
+def _is_missing(cell: Any) -> bool:
+    return cell is None or (isinstance(cell, str) and cell in _MISSING)
 
 
 def _split(text: str, delimiter: str) -> list[str]:
