@@ -28,8 +28,10 @@ from scenes import UNIT
 from uncertainties import ufloat
 
 from lagrange_cli.account.explanation import explanations
-from lagrange_cli.arithmetic.enclosures import text_of
+from lagrange_cli.arithmetic.enclosures import equal_digits, text_of
+from lagrange_cli.bench.stability import verdict_of
 from lagrange_cli.cli.app import main
+from lagrange_cli.cli.shared import is_scene
 from lagrange_cli.comparison.convergence import convergence
 from lagrange_cli.elliptic.arguments import parse_arguments
 from lagrange_cli.files.headings import name_and_unit
@@ -158,7 +160,8 @@ NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fr
 NAMES |= {
     x.__name__: x for x in (sentence, unit, numbers, digits, regimes, row, derivative, uncertain)
 }
-NAMES |= {x.__name__: x for x in (read, said_of, tops_found, compared)}
+NAMES |= {x.__name__: x for x in (read, said_of, tops_found, compared, equal_digits)}
+NAMES |= {x.__name__: x for x in (is_scene, parse_arguments, verdict_of)}
 NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
 NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
 

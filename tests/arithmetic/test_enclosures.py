@@ -27,7 +27,6 @@ from lagrange_cli.arithmetic.enclosures import (
     at_precision,
     decided,
     ends_of,
-    equal_digits,
     exact,
     kept,
     nearest,
@@ -142,12 +141,6 @@ def test_precisions_with_too_few_digits_are_passed_over() -> None:
     assert decided(lambda digits: digits, 1200, digits=90, lost=16) == 128
     with pytest.raises(LagtopError, match=r"^a sign cannot be .* with 300 digits"):
         sign_to(lambda _: between(-1, 1), 300)
-
-
-def test_equal_digits_grow_with_inputs_and_output() -> None:
-    assert equal_digits([Fraction(1, 3), Fraction(2)]) == 1200
-    assert equal_digits([Fraction(1)], digits=40) == 1600
-    assert equal_digits([Fraction(1, 10**50)]) == 1700
 
 
 def test_a_wide_enclosure_is_not_out_of_range() -> None:

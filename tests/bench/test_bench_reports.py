@@ -82,14 +82,6 @@ def test_each_kind_nutates_and_repeats_by_its_seed(kind: str) -> None:
         assert max(x.theta_max_deg - x.theta_min_deg for x in steady) < 1.1
 
 
-@pytest.mark.parametrize(
-    ("error", "rounding", "verdict"),
-    [(1e-13, 1e-15, "rounding level"), (1.1e-13, 1e-15, "inaccurate"), (2e-3, 1e-15, "lost")],
-)
-def test_verdicts(error: float, rounding: float, verdict: str) -> None:
-    assert hard.verdict_of(error, rounding) == verdict
-
-
 def test_input_rounding_is_the_effect_of_half_an_ulp() -> None:
     """Against finite differences of an integration of Euler's equations."""
     top = Top(m=1, s=1, g=1, A=1, C=0.5, r0=6, theta0_deg=60, psidot0=0.5)

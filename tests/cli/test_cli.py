@@ -19,7 +19,6 @@ from test_frozen import KEYS as FROZEN_KEYS
 from lagrange_cli import errors
 from lagrange_cli.cli.app import NAMES as COMMANDS
 from lagrange_cli.cli.fit import _write as write_fits
-from lagrange_cli.cli.shared import is_scene
 from lagrange_cli.output.destination import Output
 from lagrange_cli.output.document import record_page
 from lagrange_cli.output.formats.table import FORMAT
@@ -164,11 +163,6 @@ def test_one_window_of_a_fit_is_a_record_in_json(
     monkeypatch.setattr("lagrange_cli.inverse.report.fit_report", lambda *_, **__: empty)
     write_fits([outcome], "", "", Output(str(path := tmp_path / "fit"), "json"))
     assert path.read_text() == '{"a":1.5}\n'
-
-
-def test_words_that_name_a_scene() -> None:
-    assert all(map(is_scene, ["-", "top.toml", "folder/scene", "./scene", "x.txt", "a.b/c"]))
-    assert not any(map(is_scene, ["sphere", "T_nutation=0.5", "r0<1.5", "K>./2", "", "map"]))
 
 
 # help

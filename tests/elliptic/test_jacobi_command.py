@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from fractions import Fraction
 from typing import Any
 
 import mpmath
 import pytest
 from conftest import Lagtop
 from function_reference import cells_of
-
-from lagrange_cli.elliptic.arguments import parse_arguments
 
 DIGITS = pytest.mark.parametrize("digits", ["", " --digits 20"])
 
@@ -72,10 +69,3 @@ def test_a_nome_next_to_1(lagtop: Lagtop) -> None:
         mantissa, exponent = shown["nome_prime"].split("e")
         size = mpmath.mpf(mantissa) * mpmath.mpf(10) ** int(exponent)
         assert abs(size / mpmath.exp(-2 * K) - 1) < 1e-29
-
-
-def test_ranges_of_multiples() -> None:
-    """A range runs along a line; K is exact also in doubles."""
-    found = list(parse_arguments("K/3:1+iK':3").numbers(None))
-    assert [x.K for x in found] == [Fraction(1, 3), Fraction(1, 6), 0]
-    assert [(x.real, x.iK_prime) for x in found] == [(x, x) for x in (0, Fraction(1, 2), 1)]

@@ -326,8 +326,3 @@ def test_periods_beyond_the_doubles_have_rows(inputs: dict[str, float]) -> None:
     for t, row in zip(times.tolist(), np.stack(motion.angles(times)).T.tolist(), strict=True):
         for found, exact in zip(row, proved.row(Fraction(t)), strict=True):
             assert found == pytest.approx(float(exact.value), rel=4 * EPS, abs=4 * EPS)
-
-
-def test_numbers_at_the_start_below_all_doubles_are_0() -> None:
-    """At t = 0, q = psidot0 sin 20 deg is a third of the smallest double."""
-    assert solve(Top(r0=0, theta0_deg=20, psidot0=5e-324)).table(0.0, ["q"])["q"] == 0

@@ -98,13 +98,6 @@ def test_steady_tops(word: str, goal: float, known: dict[str, Any], count: int) 
         assert motion.regime == "steady precession"
 
 
-def test_flat_parts_of_a_condition_are_no_starts() -> None:
-    """A top that rises has its start as greatest tilt, for half of all rates."""
-    ranges: Any = {"theta0_deg": 45, "r0": (1, 20), "psidot0": (-5, 5)}
-    found = find({"Lz": 2.2, "theta_max": 46}, **STEADY_BODY, **ranges)
-    assert [x.top.r0 for x in found] == pytest.approx([1.947670, 2.733050], rel=1e-3)
-
-
 @pytest.mark.parametrize("word", ["cusped", "looping", "wavy"])
 def test_borders_of_a_path(word: str) -> None:
     """The path has cusps if the precession rate is 0 at the upper turning point, u = beta/b."""

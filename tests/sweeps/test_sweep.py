@@ -38,13 +38,6 @@ def test_a_steady_top_per_row(lagtop: Lagtop) -> None:
     assert [mixed[2], mixed[3]["psidot0"], mixed[3]["error"]] == [fast, "2.0", ""]
 
 
-def test_a_number_smaller_than_all_doubles_is_missing_and_named() -> None:
-    """The nome of a top with r0 = 1e90 is 3.975e-356, not 0."""
-    found = sweep(r0=1e90)
-    assert math.isnan(found["nome"])
-    assert "nome must be 0 or at least 5e-324" in str(found["error"].item())
-
-
 def test_results_have_the_column_error_if_a_top_has_one() -> None:
     bad = sweep(m=[1587, -1, math.nan], theta0_deg=[[30], [181]], keys=["T_nutation"])
     assert list(bad) == ["T_nutation", "error"]

@@ -163,9 +163,3 @@ def test_a_period_with_units_and_an_uncertainty(tmp_path: Path, lagtop: Lagtop) 
     record = json.loads(lagtop("solve", path, "--format", "json").stdout)
     assert record["r0"] == pytest.approx(2 * math.pi / 0.1256, rel=1e-15)
     assert record["r0_std"] == pytest.approx(record["r0"] * 0.4 / 125.6, rel=1e-4)  # not linear
-
-
-def test_periods_of_either_sign() -> None:
-    assert Top(spin_period=-0.5).r0 == -4 * math.pi
-    assert sweep(spin_period=[0.0, 1.0], keys=["r0", "error"])["error"][0].startswith("spin_period")
-    assert Top(spin_period=Fraction(1, 10), psidot0="steady").steady_word == "steady"
