@@ -390,7 +390,7 @@ def _units_in(rows: Sequence[tuple[int, str]], delimiter: str, count: int) -> li
     texts = (x.translate(_PLAIN) for _, x in rows)
     units = ["" if x == "-" else x for text in texts for x in _split(text, delimiter)]
     is_row = len(units) == count and any(units) and all(is_unit(x) for x in units if x)
-    return units if is_row else []
+    return units if is_row and not _are_numbers(units) else []
 
 
 def _first_row(
