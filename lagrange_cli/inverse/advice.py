@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic import rotations
+from ..arithmetic.rotations import within_half_turn
 from ..arithmetic.text import shortened
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, arg
+from ..names import ANGLES
 from ..recordings.frames import alignment_of, in_frames, own_frames, refined, turn_of
 from ..recordings.misreadings import evenly_timed, misreadings
 from ..recordings.options import Alignment
@@ -29,6 +31,7 @@ from .outcome import GOOD, STEADY, Outcome
 from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
 from .rows import calmness, release, with_gap
 from .search import best_fit
+from .signals import mean_rate
 
 _BUDGET = 8.0
 """Cost of the fits that are tried; that of a short recording with a tilt is 1, and takes 0.5 s."""
@@ -62,6 +65,8 @@ _FEW = 0.15
 """Largest share of rows that are outliers."""
 _ROUNDS = 3
 """Fits without outliers, each of which may show others."""
+_ALIKE = 0.3
+"""Scatter of an angle without half turns, in radians, from which it has none."""
 _LEAST_TIMES = 0.25
 """Least share of times that differ."""
 _CLOSER = 0.3
@@ -93,7 +98,8 @@ class Advice:
             yield from (Reason(Kind.READING, x) for x in self._names())
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
-        yield from (Reason(Kind.READING, x) for x in self._parts())
+        for texts in (self._parts, self._half_turns):
+            yield from (Reason(Kind.READING, x) for x in texts())
         if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         yield from (Reason(Kind.READING, x) for x in self.gap())
@@ -240,6 +246,30 @@ class Advice:
                 shown = ", ".join(" to ".join(f"{y:.6g}" for y in x) for x in ends)
                 yield f"leave out the rows at t = {shortened(shown)}"
                 return
+
+    def _half_turns(self) -> Iterator[str]:
+        """Yield that spin or precession is half a turn off in some rows, where marks look alike.
+
+        Twice the angle has no such jumps, and shows a mean rate that they have changed.
+        """
+        recording, motion = self.recording, self.outcome.motion(self.recording.t)
+        for name in sorted({"phi", "psi"} & {*recording.channels}):
+            angle = recording.angles[name]
+            off, seen = angle - motion[ANGLES.index(name)], np.isfinite(angle)
+            t, twice = recording.t[seen], 2 * off[seen]
+            rate = mean_rate(t, twice, recording.frame)
+            phase = np.angle(np.sum(np.exp(1j * (twice - rate * t))))
+            off = within_half_turn(off - (rate * recording.t + phase) / 2)
+            wrong = np.abs(off) > math.pi / 2
+            if not wrong.any() or np.std((off - wrong * np.copysign(math.pi, off))[seen]) > _ALIKE:
+                continue
+            fixed = angle - wrong * math.pi
+            if self._is_good(replace(recording, angles={**recording.angles, name: fixed})):
+                at = recording.t_start + float(recording.t[wrong][0])
+                where = (
+                    f"{name} is half a turn off in {wrong.sum()} rows, the first at t = {at:.6g}"
+                )
+                yield f"{where}, as if two marks look alike: correct it"
 
     def _windows(self) -> Iterator[Reason]:
         """Yield the least number of windows that are all good and show a decay.

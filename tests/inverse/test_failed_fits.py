@@ -78,13 +78,19 @@ def test_an_aliased_nutation_is_named_and_so_is_a_frame_that_looks_like_it(
     assert said in fit(t, axis=axis_of(exact["theta"], exact["psi"]) + noise).failure()
 
 
-def test_an_outlier_is_named() -> None:
+def test_a_burst_of_outliers_is_named() -> None:
     t, seen = recorded("theta", "psi", seed=8)
-    seen["psi"][30] += 20 * DEGREE
+    seen["psi"][30:33] += np.array([20, 5, -9]) * DEGREE
     failure = fitted(t, seen).failure()
     (off,) = re.findall(r"^psi is (.*) deg off at t = .*, far more than else", failure)
     assert float(off) == pytest.approx(20, abs=1)
-    assert failure.endswith(f"; leave out the rows at t = {t[30]:.6g}")
+    assert failure.endswith(f"; leave out the rows at t = {t[30]:.6g} to {t[32]:.6g}")
+
+
+def test_marks_that_look_alike_are_named() -> None:
+    t, seen = recorded("theta", "psi", "phi", seed=8)
+    seen["phi"][::5] += 180 * DEGREE
+    assert f"phi is half a turn off in {len(t[::5])} rows" in fitted(t, seen).failure()
 
 
 def test_a_release_is_seen_beside_missing_cells() -> None:
