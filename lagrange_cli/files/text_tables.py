@@ -294,7 +294,7 @@ def read_table(
     if (
         headings
         and not width
-        and (units := _units_in(sample[first:][:1], delimiter, len(headings)))
+        and (units := _units_in(sample[first:][:2], delimiter, len(headings)))
     ):
         pairs, first = zip(headings, units, strict=True), first + 1
         headings = [f"{name} [{unit}]" if unit else name for name, unit in pairs]
@@ -386,11 +386,16 @@ def _layout(
 
 
 def _units_in(rows: Sequence[tuple[int, str]], delimiter: str, count: int) -> list[str]:
-    """Return the units in a row below headings, empty for a column without; none in other rows."""
-    texts = (x.translate(_PLAIN) for _, x in rows)
-    units = ["" if x == "-" else x for text in texts for x in _split(text, delimiter)]
-    is_row = len(units) == count and any(units) and all(is_unit(x) for x in units if x)
-    return units if is_row and not _are_numbers(units) else []
+    """Return the units in the first of two rows below headings, empty for a column without.
+
+    None are in another row: the second row must have numbers below the units.
+    """
+    cells = [_split(text.translate(_PLAIN), delimiter) for _, text in rows]
+    if len(cells) < 2 or not len(cells[0]) == len(cells[1]) == count or _are_numbers(cells[0]):
+        return []
+    units = ["" if x == "-" else x for x in cells[0]]
+    below = [y for x, y in zip(units, cells[1], strict=True) if x]
+    return units if _are_numbers(below) and all(is_unit(x) for x in units if x) else []
 
 
 def _first_row(
