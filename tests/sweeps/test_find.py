@@ -130,26 +130,6 @@ def test_a_warning_names_the_defaults_of_the_body() -> None:
     assert [x.filename for x in said] == [__file__]
 
 
-LAB = ["--m", "0.35kg", "--A", "8.5e-4 kg m^2", "--C", "4e-4 kg m^2", "--s", "3cm"]
-LAB += ["--g", "9.81 m/s^2", "--theta0", "60deg", "--r0", "1000:20000 rpm"]
-
-
-@pytest.mark.parametrize(
-    ("united", "plain"),
-    [
-        ("T_precession=5000ms", "T_precession=5"),
-        ("mean_precession_rate=12rpm", f"mean_precession_rate={0.4 * math.pi}"),
-        ("theta_max=0.175turn", "theta_max=63"),
-        ("theta_max=1.1rad", f"theta_max={math.degrees(1.1)}"),
-        ("Lz=0.06 kg m^2/s", "Lz=0.06"),
-    ],
-)
-def test_conditions_with_units(united: str, plain: str, lagtop: Lagtop) -> None:
-    found = [lagtop("find", *LAB, x, "--scan", 200, "--keys", "r0").stdout for x in (united, plain)]
-    rates = [float(text.splitlines()[1]) for text in found]
-    assert rates[0] == pytest.approx(rates[1], rel=1e-13)
-
-
 def test_the_command_writes_records(lagtop: Lagtop, tmp_path: Path) -> None:
     options = ("find", "--r0", "10:60", "T_nutation=0.45", "--scan", 300)
     result = lagtop(*options)
