@@ -110,9 +110,8 @@ def test_the_sample_gives_the_body() -> None:
     outcome = fit(t, theta=theta, psi=psi, phi=phi, known={"m": 1.587, "g": 9.81, "s": 0.04})
     assert_true(outcome, {"A": 3.9032e-3, "C": 1.7458e-3, "r0": 50, "theta0_deg": 41}, least=4)
     assert repr(outcome).startswith(f"fit of {t.size} rows: good\na   ")
-    exact = solve(recordings.TOP)
     keys = ["T_nutation", "mean_precession_rate", "mean_spin_rate", "theta_max_deg"]
-    assert_true(outcome, {key: getattr(exact, key) for key in keys}, least=4)
+    assert_true(outcome, solve(recordings.TOP).record(keys=keys), least=4)
     for curve in outcome.curves():
         model, seen = np.interp(curve.t, curve.fine_t, curve.curve), np.isfinite(curve.data)
         off = curve.data - curve.residual - model
@@ -139,7 +138,6 @@ def test_any_unit_of_time() -> None:
     (t, seen), scale = recorded("theta", "psi", seed=8), 1e-9
     one, other = fitted(t, seen), fitted(t / scale, seen)
     assert other.verdict == "good"
-    assert other.frequency / scale == pytest.approx(one.frequency, rel=1e-6)
     powers = {"a": 2, "b": 1, "theta0_deg": 0, "T_nutation": -1, "T_nutation_elementary": -1}
     powers |= {"mean_precession_rate": 1, "precession_rate_elementary": 1, "psidot0": 1}
     for key, power in powers.items():

@@ -81,7 +81,7 @@ def test_a_known_spin_that_is_not_recorded_keeps_its_uncertainty() -> None:
     assert_true(both, {"r0": 52.36, "C": 2.5e-3})
 
 
-def test_a_prior_lies_between_a_known_input_and_none() -> None:
+def test_a_prior_is_weighted_and_a_rough_one_improved() -> None:
     """The estimate of A is the mean of prior and data, weighted by their variances."""
     t, seen = recorded("theta", "psi", seed=10)
     value, std, *_ = fitted(t, seen, known=LAB).numbers["A"]
@@ -90,19 +90,15 @@ def test_a_prior_lies_between_a_known_input_and_none() -> None:
     weights = np.array([std**-2, spread**-2])
     assert found.value == pytest.approx(weights @ [value, prior] / weights.sum(), abs=0.02 * std)
     assert found.std == pytest.approx(weights.sum() ** -0.5, rel=0.02)
+    # a fit with a rough value begins in phase with the recording, whatever b that implies
+    rough = fitted(*recorded(*ANGLES, seed=9), known=LAB | {"C": "0.003(1)"})
+    assert_true(rough, TRUTH)
+    assert rough.numbers["b"].std < 0.3
 
 
-def test_a_rough_input_is_improved() -> None:
-    """The fit with it begins in phase with the recording, whatever b the rough value implies."""
-    found = fitted(*recorded(*ANGLES, seed=9), known=LAB | {"C": "0.003(1)"})
-    assert_true(found, TRUTH)
-    assert found.numbers["b"].std < 0.3
-
-
-_OF_A_SPIN = pytest.param({"r0": 600}, marks=pytest.mark.slow)
-
-
-@pytest.mark.parametrize("known", [_OF_A_SPIN, {"C": 1.7458e-3}])
+@pytest.mark.parametrize(
+    "known", [pytest.param({"r0": 600}, marks=pytest.mark.slow), {"C": 1.7458e-3}]
+)
 def test_a_known_input_decides_the_direction_of_psi(known: dict[str, float]) -> None:
     """At 120 rows per second, written in microseconds; with psi reversed a slower spin fits."""
     top = recordings.TOP.replace(r0=600, theta0_deg=40, psidot0=1.5, thetadot0=4)

@@ -15,7 +15,6 @@ from scenes import UNIT
 from lagrange_cli.bench.hard_scenes import nutating as hard_scene
 from lagrange_cli.inverse.motions import angles, gaps_of, nutating, states_of
 
-KINDS_OF_GAPS = ("generic", "from rest", "near a pole", "near separatrix", "slow")
 EPS = 2.0**-52
 
 
@@ -69,7 +68,7 @@ def test_tops_of_a_nutation_have_its_period_its_tilts_and_its_rate(signs: tuple[
 
 
 @pytest.mark.parametrize("count", [8, pytest.param(300, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("kind", KINDS_OF_GAPS)
+@pytest.mark.parametrize("kind", ["generic", "from rest", "near a pole", "near separatrix", "slow"])
 def test_gaps_of_the_roots_have_all_digits(kind: str, count: int) -> None:
     """Against the roots of the cubic (4,9) in 60 digits, from the same doubles."""
     rng, errors = Random(f"gaps {kind}"), []

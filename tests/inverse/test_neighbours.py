@@ -10,15 +10,7 @@ import pytest
 from engines import wxyz
 from lagtop import Top, fit, solve
 from machines import MACHINES, filtered
-from noisy_recordings import (
-    DEGREE,
-    TOP,
-    attitude_of,
-    fitted,
-    motion_of,
-    recorded,
-    recording_from,
-)
+from noisy_recordings import DEGREE, TOP, attitude_of, fitted, motion_of, recorded, recording_from
 
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.advice import Advice
@@ -83,8 +75,8 @@ def test_machines_are_named_with_their_sizes() -> None:
 def test_a_clock_whose_rate_wanders_is_no_lost_row() -> None:
     t = np.arange(120) / 60
     late = t + 0.05 / 3 * (np.sin(3 * t + 1) - np.sin(1))
-    found = alone(t, recorded("theta", "psi", top=MACHINE, t=late, noise=1.1, seed=4)[1]).neighbour
-    assert found.startswith("a clock whose rate wanders by "), found
+    angles = recorded("theta", "psi", top=MACHINE, t=late, noise=1.1, seed=4)[1]
+    assert alone(t, angles).neighbour.startswith("a clock whose rate wanders by ")
 
 
 def test_a_jump_is_named_and_reasons_are_in_the_order_of_their_kinds() -> None:
