@@ -291,12 +291,9 @@ def read_table(
             split_row(line, delimiter)
         except LagtopError as error:
             raise DataError.at(f"{name}, line {number}", error) from None
-    if (
-        headings
-        and not width
-        and (units := _units_in(sample[first:][:2], delimiter, len(headings)))
-    ):
-        pairs, first = zip(headings, units, strict=True), first + 1
+    at = first - bool(width)  # the row above the numbers, or below the headings
+    if headings and (units := _units_in(sample[at : at + 2], delimiter, len(headings))):
+        pairs, first = zip(headings, units, strict=True), at + 1
         headings = [f"{name} [{unit}]" if unit else name for name, unit in pairs]
     rows = sample[first:]
     cells = _split(rows[0][1], delimiter) if rows else []
