@@ -36,7 +36,7 @@ from .signals import mean_rate
 _BUDGET = 8.0
 """Cost of the fits that are tried; that of a short recording with a tilt is 1, and takes 0.5 s."""
 _LONG = 1500
-"""Rows that cost as much again."""
+"""Rows that cost as much again, or twice as much if both directions of psi are tried."""
 _WITHOUT_TILT = 3.0
 """Cost of a fit that has to find the tilt."""
 _LEAST_COST = (0.15, 0.5)
@@ -85,8 +85,9 @@ class Advice:
         self.body = {name: x for name, x in known.items() if replaced_by(name) in BODY}
         if len(recording.angles) == 1:  # of which a known start is a part
             self.body = dict(known)
-        self.cost = 1 + recording.t.size / _LONG
         has_no_tilt = "theta" not in recording.angles
+        tries_both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
+        self.cost = 1 + recording.t.size / _LONG * (1 + tries_both)
         self.cost *= _WITHOUT_TILT if has_no_tilt else 1.0
         self.least = _LEAST_COST[has_no_tilt]
         self.left, self.is_early = _BUDGET - again * self.cost, True
