@@ -187,6 +187,13 @@ def test_columns_that_are_named(text: str, tmp_path: Path) -> None:
     assert file.given["t"][:, 0].tolist() == [0, 1]
 
 
+def test_units_below_headings_that_are_renamed(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("Clock,Tilt\nms,rad\n500,0.5\n1500,0.6\n")
+    file = read_recording(str(tmp_path / "file"), Reading(["t", "theta"]))
+    assert file.t.tolist() == [0.5, 1.5]
+    assert file.given["theta"][:, 0].tolist() == [0.5, 0.6]
+
+
 def test_what_was_read(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text(
