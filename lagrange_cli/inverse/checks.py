@@ -223,8 +223,7 @@ class Residuals:
         bound = _bound(self.y.size, chance)
         alike = f"{shown}: neighbours correlate by {correlation:.2f}"
         rows_per_period = self.y.size / max(frequency * float(self.t[-1]), 1.0)
-        lags = max(self.reach, self.widening(chance) ** 2)
-        is_far = correlation > bound and lags > min(rows_per_period / _ROWS_PER_LAG, _LAGS)
+        is_far = correlation > bound and self.reach > min(rows_per_period / _ROWS_PER_LAG, _LAGS)
         above = _ABOVE * (_SMOOTHED if correlation > bound and self.is_smoothed else 1.0)
         if self.rms > above * max(self.neighbours, self.step / math.sqrt(12), ROUNDING):
             times = self.rms / max(self.neighbours, ROUNDING)
