@@ -99,16 +99,15 @@ class Advice:
             yield from (Reason(Kind.READING, x) for x in self._names())
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
-        for texts in (self._parts, self._half_turns):
+        first = next(iter(self.outcome.shown.values()), None)
+        is_step = first is not None and first.one.row > 0  # a misreading acts in all rows
+        for texts in () if is_step else (self._parts, self._half_turns):
             yield from (Reason(Kind.READING, x) for x in texts())
         if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         yield from (Reason(Kind.READING, x) for x in self.gap())
-        readings = [self._times, self._meanings, self._frames, self._aliased]
-        first = next(iter(self.outcome.shown.values()), None)
-        if first and first.one.row:  # a misreading acts in all rows
-            readings = []
-        for texts in readings:
+        readings = (self._times, self._meanings, self._frames, self._aliased)
+        for texts in () if is_step else readings:
             yield from (Reason(Kind.READING, x) for x in texts())
         if Kind.MACHINE not in self.kinds:
             yield from self._last()
