@@ -51,10 +51,7 @@ def recorded(
     seed: int,
     sizes: Mapping[str, float] | None = None,
 ) -> tuple[Array, dict[str, Array]]:
-    """Return times and angles with noise in degrees, within half a turn but for the tilt.
-
-    Those of a machine if it has sizes.
-    """
+    """Return times and angles within half a turn, with noise in degrees; sizes are a machine's."""
     t = np.linspace(0, seconds, rows) if t is None else t
     exact, rng = motion_of(top, t, **sizes or {}), np.random.default_rng(seed)
     found = {x: exact[x] + rng.normal(scale=noise * DEGREE, size=t.size) for x in names}

@@ -21,6 +21,7 @@ import lagtop
 import numpy as np
 import pint
 import pytest
+import xarray
 from click.testing import CliRunner, Result
 from lagtop import LagtopError, Top, find, sensitivities, solve
 from recordings import SAMPLES
@@ -34,6 +35,7 @@ from lagrange_cli.cli.app import main
 from lagrange_cli.cli.shared import is_scene
 from lagrange_cli.comparison.convergence import convergence
 from lagrange_cli.elliptic.arguments import parse_arguments
+from lagrange_cli.elliptic.eta import Quadrature, eta_record
 from lagrange_cli.files.headings import name_and_unit
 from lagrange_cli.inverse.known import compared
 from lagrange_cli.names import check_names
@@ -150,20 +152,27 @@ def said_of(*errors: float) -> str:
     return f"{found.sentence} {found.converges}" if found else ""
 
 
+def eta_zeros(lower: str, upper: str, *outer: str) -> str:
+    """Return the constants of an eta that are 0 in digits, as in doubles."""
+    of = Quadrature(Fraction(lower), Fraction(upper), tuple(map(Fraction, outer)), Fraction(1))
+    zeros = [key for key, text in eta_record(of, 20).items() if text == "0.0"]
+    assert zeros == [key for key, x in eta_record(of).items() if x == 0]
+    return " ".join(zeros) or "none"
+
+
 def tops_found(*conditions: str) -> list[float]:
     """Return r0 of the tops with the nutation period 0.45 and other conditions."""
     return [round(float(x.top.r0), 6) for x in find(["T_nutation=0.45", *conditions], r0="10:60")]
 
 
+CALLED = (
+    *(sentence, unit, numbers, digits, regimes, row, derivative, uncertain, size_of, argument),
+    *(columns_known, explanations, read, said_of, tops_found, eta_zeros, compared, equal_digits),
+    *(is_scene, parse_arguments, verdict_of, Quadrature, eta_record, check_names, name_and_unit),
+    *(text_of, ufloat, lagtop, math, pint, xarray, Decimal, Fraction),
+)
 NAMES: dict[str, Any] = {name: getattr(lagtop, name) for name in dir(lagtop)}
-NAMES |= vars(values) | {x.__name__: x for x in (lagtop, math, pint, Decimal, Fraction)}
-NAMES |= {
-    x.__name__: x for x in (sentence, unit, numbers, digits, regimes, row, derivative, uncertain)
-}
-NAMES |= {x.__name__: x for x in (read, said_of, tops_found, compared, equal_digits)}
-NAMES |= {x.__name__: x for x in (is_scene, parse_arguments, verdict_of)}
-NAMES |= {x.__name__: x for x in (size_of, argument, columns_known, explanations)}
-NAMES |= {x.__name__: x for x in (check_names, name_and_unit, text_of, ufloat)} | {"np": np}
+NAMES |= vars(values) | {x.__name__: x for x in CALLED} | {"np": np}
 
 
 # The tests

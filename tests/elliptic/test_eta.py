@@ -121,12 +121,6 @@ def test_chain(name: str) -> None:
             assert is_nearest(row["xi_prime"], sn * (-1) ** int(turns))
 
 
-def test_the_order_of_the_outer_roots_is_free() -> None:
-    one, other = quadrature("-0.5", "0.6", "-1.3 1.5"), quadrature("-0.5", "0.6", "1.5 -1.3")
-    assert eta_record(one) == eta_record(other)
-    assert eta_record(one)["q"] == 1.4
-
-
 @pytest.mark.parametrize(
     ("outer", "kind"),
     [
@@ -145,27 +139,3 @@ def test_degenerate_radicands_are_named(lagtop: Lagtop, outer: str, kind: str) -
     still = json.loads(lagtop(*args, "--delta-star", "0.5").stdout)
     degree = kind.split(maxsplit=1)[0].rstrip(",")
     assert still["kind"] == f"{degree}, the band is a double root: eta is constant"
-
-
-@pytest.mark.parametrize(
-    ("of", "zeros"),
-    [
-        (quadrature("-1", "1", "-2 2"), "p d gamma"),
-        (quadrature("0", "1", "-1 2"), "delta_star d"),
-        (quadrature("0", "1", "2 2"), "delta_star q k k1"),
-        (quadrature("1", "1", "2"), "k k1 s d"),
-        (quadrature("-1", "1", "2"), ""),
-        # m'^2 = 4 m''^2, so that m'' delta = m' delta*
-        (quadrature("1", "2", "2/3"), "s"),
-        # m'^2 = 4 m''^2, so that m'' delta = -m' delta*
-        (quadrature("-1", "2", "-2"), "gamma"),
-    ],
-)
-def test_zeros_of_the_constants_are_exact(of: Quadrature, zeros: str) -> None:
-    """A constant is printed as 0 just where it is 0, in doubles and in digits.
-
-    The reference is (3.2.3) and (3.2.12) in fractions, m' and m'' by their squares.
-    """
-    in_digits, in_doubles = eta_record(of, 20), eta_record(of)
-    assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())
-    assert {key for key, x in in_doubles.items() if x == 0} == set(zeros.split())

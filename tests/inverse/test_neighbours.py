@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,10 +13,11 @@ from engines import wxyz
 from lagtop import Top, fit, solve
 from machines import MACHINES, filtered
 from noisy_recordings import DEGREE, TOP, attitude_of, fitted, motion_of, recorded, recording_from
+from scipy.spatial.transform import Rotation
 
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.inverse.advice import Advice
-from lagrange_cli.inverse.neighbours import machines
+from lagrange_cli.inverse.neighbours import Neighbour, machines, misread
 from lagrange_cli.inverse.outcome import Outcome
 from lagrange_cli.inverse.reasons import Kind
 from lagrange_cli.inverse.rows import frequency_of_parts, repeated, with_gap
@@ -23,7 +26,7 @@ from lagrange_cli.inverse.variations import Variations
 from lagrange_cli.names import ANGLES
 
 A, B, R0 = 80.0, 12.0, 20.0
-START = np.array([1.1, 0.3, 0.9])
+STATE, T = np.array([A, B, 1.1, 0.3, 0.9]), np.arange(180) / 60
 MACHINE = Top(m=1, s=1, g=A / 2, A=1, C=B / R0, r0=R0, theta0_deg=math.degrees(1.1)).replace(
     thetadot0=0.3, psidot0=0.9
 )
@@ -46,19 +49,40 @@ def alone(t: Array, angles: dict[str, Array]) -> Outcome:
     return best_fit(one, {}, frequency=frequency_of_parts(one))
 
 
-@pytest.mark.parametrize(("words", "size"), TEMPLATES.items())
-def test_a_template_is_the_change_of_the_motion(words: str, size: str) -> None:
-    """Of machines by an integrator; in one direction at least."""
-    t = np.arange(180) / 60
-    after, before = (motion_of(MACHINE, t, **{size: x}) for x in (1e-4, -1e-4))
-    expected = np.stack([after[x] - before[x] for x in ANGLES]) / 2e-4
-    motion = Variations(np.array([A, B, *START]), R0 / B, t)
-    (changes,) = [x.changes for x in machines(motion) if words in x.name]
-    ways = np.stack([x.ravel() for x in changes], axis=1)
+def assert_spans(found: Iterable[Neighbour], words: str, expected: Array) -> None:
+    """Check that a template holds a change, at its size; in one direction at least."""
+    (changes,) = [x.changes for x in found if words in x.name]
+    ways = np.stack([x[: len(expected)].ravel() for x in changes], axis=1)
     factors = np.linalg.lstsq(ways, expected.ravel(), rcond=None)[0]
     rest = expected.ravel() - ways @ factors
     assert np.abs(rest).max() < 0.02 * np.abs(expected).max()
     assert np.linalg.norm(factors) == pytest.approx(1, abs=0.02)
+
+
+@pytest.mark.parametrize(("words", "size"), TEMPLATES.items())
+def test_a_template_is_the_change_of_the_motion(words: str, size: str) -> None:
+    """Of machines by an integrator."""
+    after, before = (motion_of(MACHINE, T, **{size: x}) for x in (1e-4, -1e-4))
+    expected = np.stack([after[x] - before[x] for x in ANGLES]) / 2e-4
+    assert_spans(machines(Variations(STATE, R0 / B, T)), words, expected)
+
+
+@pytest.mark.parametrize("words", ["tilted vertical", "misaligned figure axis", "origin beside"])
+def test_a_template_of_a_frame_is_a_small_turn(words: str) -> None:
+    angles = motion_of(MACHINE, T)
+    turns, ends = attitude_of(angles), []
+    for x in (1e-5, -1e-5):
+        small = Rotation.from_rotvec([x, 0, 0])
+        psi, theta, phi = (small * turns if "vert" in words else turns * small).as_euler("ZXZ").T
+        if "origin" in words:
+            right, ahead, up = turns.apply([0, 0, 1]).T + np.reshape([x, 0, 0], (3, 1))
+            theta, psi = np.arctan2(np.hypot(right, ahead), up), np.arctan2(right, -ahead)
+        ends.append(np.stack([theta, psi] if "origin" in words else [theta, phi, psi]))
+    seen_by: Any = SimpleNamespace(angles=angles, kind="angles", position=angles)
+    found = [*misread(Variations(STATE, R0 / B, T), seen_by)]
+    if "origin" in words:  # phi is not seen
+        found = [x._replace(changes=[y[[0, 2]] for y in x.changes]) for x in found]
+    assert_spans(found, words, np.angle(np.exp(1j * (ends[0] - ends[1]))) / 2e-5)
 
 
 def test_machines_are_named_with_their_sizes() -> None:
@@ -125,9 +149,8 @@ def test_rows_that_may_be_lost_are_in_the_model_error() -> None:
     """Two rows of 63 are too few to be sure of."""
     t, angles = seen(rows=65, noise=2.9, seed=3)
     one = fitted(t[:63], {x: np.delete(y, [30, 31]) for x, y in angles.items()})
-    off = abs(one.numbers["a"].value - A)
-    model = one.model_errors.get("a", 0.0) * A
-    assert one.verdict == "failed" or off < 5 * one.numbers["a"].std + model
+    a, model = one.numbers["a"], one.model_errors.get("a", 0.0) * A
+    assert one.verdict == "failed" or abs(a.value - A) < 5 * a.std + model
 
 
 @pytest.mark.parametrize(

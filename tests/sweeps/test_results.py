@@ -8,7 +8,6 @@ import sys
 import numpy as np
 import pandas
 import pytest
-import xarray
 from lagtop import LagtopError, Top, solve, sweep
 
 from lagrange_cli.errors import UnavailableError
@@ -47,11 +46,6 @@ def test_the_index_of_a_frame_is_kept() -> None:
     assert sweep(r0=frame.r0, theta0_deg=[[30], [60]], keys=["K"]).to_pandas().index[-1] == 5
     with pytest.raises(LagtopError, match="r0 and theta0_deg are Series with different indices"):
         sweep(r0=frame.r0, theta0_deg=frame.theta0_deg[::-1])
-
-
-def test_named_dimensions_are_refused() -> None:
-    with pytest.raises(LagtopError, match=r"r0 has named dimensions: pass r0.to_numpy"):
-        sweep(r0=xarray.DataArray(SPINS, dims="run"))
 
 
 @pytest.mark.parametrize("library", ["pandas", "xarray"])

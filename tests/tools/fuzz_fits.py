@@ -40,6 +40,7 @@ sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the
 from engines import Array
 from lagtop import LagtopError, fit
 from machines import MACHINES, disturbed, filtered, rows_of
+from noisy_recordings import axis_of
 
 CHANNELS = [("theta", "phi", "psi"), ("theta", "psi"), ("theta", "phi"), ("phi", "psi")]
 LOOKS = (
@@ -285,8 +286,7 @@ def _arrays(
     """Return a noisy axis or a noisy quaternion."""
     theta, phi, psi = (exact[name] for name in CHANNELS[0])
     if look == "axis":
-        flat = np.sin(theta)
-        axis = np.stack([flat * np.sin(psi), -flat * np.cos(psi), np.cos(theta)], axis=-1)
+        axis = axis_of(theta, psi)
         return {"axis": axis + rng.normal(scale=size, size=axis.shape)}
     plus, minus = (psi + phi) / 2, (psi - phi) / 2
     upper, lower = np.cos(theta / 2), np.sin(theta / 2)
