@@ -22,16 +22,24 @@ if TYPE_CHECKING:
     from ..recordings.options import Reading
 
 
-def _parse_sigma(text: str) -> float | dict[str, float]:
-    """Return a number, or the numbers of `theta=0.3,psi=0.5` by name."""
+def _parse_sigma(text: str) -> list[tuple[str, float]]:
+    """Return the names and numbers of `theta=0.3,psi=0.5`; the name of a single number is empty."""
     if not text[:1].isalpha() and text.count(",") < 2:
-        return opt.parse_positive(text)
+        return [("", opt.parse_positive(text))]
     parts = [part.partition("=") for part in split_names(text)]
     if not all(value for *_, value in parts):
         raise LagtopError(f"must be one number or theta=0.3,psi=0.5, got {quoted(text)}")
-    if (twice := repeated(name.strip() for name, *_ in parts)) is not None:
-        raise LagtopError(f"must name each angle once, got {quoted(twice)} twice")
-    return {name.strip(): opt.parse_positive(value) for name, _, value in parts}
+    return [(name.strip(), opt.parse_positive(value)) for name, _, value in parts]
+
+
+def _sigma(pairs: list[tuple[str, float]]) -> float | dict[str, float]:
+    """Return a number, or the numbers by name.  Raises LagtopError for a repeated name."""
+    names = [name for name, _ in pairs]
+    if "" in names and len(names) > 1:
+        raise LagtopError(f"--sigma must be one number or theta=0.3,psi=0.5, got {len(names)}")
+    if (twice := repeated(names)) is not None:
+        raise LagtopError(f"--sigma must name each angle once, got {quoted(twice)} twice")
+    return dict(pairs) if names[0] else pairs[0][1]
 
 
 @opt.command(
@@ -43,7 +51,7 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
 @opt.top("RECORDING", whole=False, is_scene=None)
 @opt.option(
     "--sigma",
-    type=opt.Parsed("SIGMA", _parse_sigma),
+    type=opt.Listed("SIGMA", _parse_sigma),
     help="Standard deviation of every angle, or theta=0.3,psi=0.5.  [default: estimated from the "
     "residuals]",
 )
@@ -57,7 +65,7 @@ def fit_command(
     top: opt.TopOptions,
     reading: Reading,
     words: list[str],
-    sigma: float | dict[str, float] | None,
+    sigma: list[tuple[str, float]] | None,
     window: int | None,
     plot: str | None,
     out: Output,
@@ -88,7 +96,8 @@ def fit_command(
         raise LagtopError("--window cannot be used with -o FILE.toml")
     opt.check_plot(plot, out.path)
     radians = top.radians
-    recording = measured(read_recording(words[0], reading), sigma)
+    noise = _sigma(sigma) if sigma else None
+    recording = measured(read_recording(words[0], reading), noise)
     given = top.given()
     known, source = known_inputs(given), one_line(shown_path(words[0]))
     body = given._replace(values={x: y for x, y in given.values.items() if replaced_by(x) in BODY})
