@@ -157,7 +157,7 @@ def misread(x: Variations, one: Measured) -> Iterator[Neighbour]:
         askew += [only(theta=-beside, phi=-c * along / s, psi=along / s)]
         yield Neighbour("a misaligned figure axis of the data", "by {} % of a radian", askew)
     if one.position is not None:
-        shifted = [turned(y[:, np.newaxis] - axis * (y @ axis)) for y in np.eye(3)]
+        shifted = [turned(y[:, np.newaxis]) for y in np.eye(3)]
         yield Neighbour("an origin beside the pivot", "by {} % of the distance", shifted)
     smooth = x.slope(x.angles, 2) / 2 if is_angles else turned(x.slope(axis, 2) / 2)
     words = "a filter", "with a standard deviation of {} % of a period"
