@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -26,7 +26,7 @@ from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
 from .measured import LEAST_ROWS, Measured, measured
-from .neighbours import DECAY, SLOWING, lost_text
+from .neighbours import DECAY, LOST, SLOWING, lost_text
 from .outcome import GOOD, STEADY, Outcome
 from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
 from .rows import calmness, release, with_gap
@@ -99,18 +99,26 @@ class Advice:
             yield from (Reason(Kind.READING, x) for x in self._names())
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
-        first = next(iter(self.outcome.shown.values()), None)
-        is_step = first is not None and first.one.row > 0  # a misreading acts in all rows
-        for texts in () if is_step else (self._parts, self._half_turns):
-            yield from (Reason(Kind.READING, x) for x in texts())
-        if SLOWING & self.outcome.shown.keys() or Kind.MACHINE not in self.kinds:
+        shown, first = self.outcome.shown, next(iter(self.outcome.shown), "")
+        if first == LOST:
+            yield from (Reason(Kind.ROWS, x) for x in self.gap())
+        is_step = first not in {"", LOST} and shown[first].one.row > 0
+        if not is_step:  # in which rows are right, and read as the others
+            yield from self._texts(self._parts, self._half_turns)
+        if SLOWING & shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
-        yield from (Reason(Kind.READING, x) for x in self.gap())
-        readings = (self._times, self._meanings, self._frames, self._aliased)
-        for texts in () if is_step else readings:
-            yield from (Reason(Kind.READING, x) for x in texts())
-        if Kind.MACHINE not in self.kinds:
+        if first != LOST:
+            yield from (Reason(Kind.ROWS, x) for x in self.gap())
+        if not is_step:
+            yield from self._texts(self._times, self._meanings, self._frames, self._aliased)
+        if Kind.MACHINE not in self.kinds or first == LOST:
             yield from self._last()
+
+    @staticmethod
+    def _texts(*each: Callable[[], Iterator[str]]) -> Iterator[Reason]:
+        """Yield the texts of readings."""
+        for texts in each:
+            yield from (Reason(Kind.READING, x) for x in texts())
 
     def _fit(self, recording: Measured, known: Known | None = None, **how: Any) -> Outcome | None:
         """Return a fit, None if it costs too much, or if it needs other inputs."""
@@ -356,7 +364,8 @@ class Advice:
 
     def gap(self) -> Iterator[str]:
         """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
-        recording, late = self.recording, self.outcome.late
+        recording, shown = self.recording, self.outcome.shown
+        late = self.outcome.late or shown.get(LOST)
         if not recording.is_even:
             return
         row, count = (late.one.row, round(late.size)) if late else self.lost_rows()
@@ -364,7 +373,7 @@ class Advice:
         if other is None or other.verdict != GOOD:
             return
         gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
-        if gain > max([_SURE_GAP, *[x.score for x in self.outcome.shown.values()]]):
+        if gain > max([_SURE_GAP, *[x.score for x in shown.values() if x.one.name != LOST]]):
             yield f"{lost_text(recording, row, count)}: write the times of the frames"
 
     def _last(self) -> Iterator[Reason]:

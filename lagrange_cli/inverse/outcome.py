@@ -23,7 +23,7 @@ from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .known import Known
 from .measured import Measured
 from .minimum import APART
-from .neighbours import DECAY, LOST, Finding, Neighbours, neighbours_of
+from .neighbours import DECAY, Finding, Neighbours, neighbours_of
 from .reasons import ADVICE, MISFITS, Kind, Reason
 from .rows import repeated
 from .spins import FASTER
@@ -187,12 +187,13 @@ class Outcome(HasRecord):
     def failures(self) -> list[Reason]:
         """Return the reasons why the fit has failed.
 
-        A machine is left out if another reading is good, or if the spin decays and the machine is
-        not a decay.
+        A machine is left out if rows or another reading explain the recording, if rows that seem
+        lost are not, or if the spin decays and the machine is not a decay.
         """
-        others = {Kind.READING} if DECAY in self.shown else {Kind.READING, Kind.WINDOWS}
-        is_misread = any(x.kind in others for x in self.hints)
-        kept = [x for x in self.failed if not (is_misread and x.kind is Kind.MACHINE)]
+        others = {Kind.ROWS, Kind.READING, Kind.CHECK}
+        others |= set() if DECAY in self.shown else {Kind.WINDOWS}
+        is_other = any(x.kind in others for x in [*self.failed, *self.hints])
+        kept = [x for x in self.failed if not (is_other and x.kind is Kind.MACHINE)]
         return kept or self.failed
 
     def _of_neighbours(self) -> Iterator[Reason]:
@@ -202,11 +203,8 @@ class Outcome(HasRecord):
         """
         first = next(iter(self.shown), None)
         if first and not (self.recording.name and first == DECAY):
-            if first == LOST:
-                yield Reason(Kind.ROWS, f"{self.neighbour}: write the times of the frames")
-            else:
-                shows = "the recording shows more than a Lagrange top"
-                yield Reason(Kind.MACHINE, f"{shows}: {self.neighbour}")
+            shows = "the recording shows more than a Lagrange top"
+            yield Reason(Kind.MACHINE, f"{shows}: {self.neighbour}")
 
     def _of_data(self) -> Iterator[Reason]:
         """Yield what is wrong with the rows, whatever the motion."""
