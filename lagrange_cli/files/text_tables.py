@@ -391,6 +391,8 @@ def _units_in(rows: Sequence[tuple[int, str]], delimiter: str, count: int) -> li
     if len(cells) < 2 or not len(cells[0]) == len(cells[1]) == count or _are_numbers(cells[0]):
         return []
     units = ["" if x == "-" else x for x in cells[0]]
+    if any(_NUMBER.fullmatch(x) for x in units if x != "1"):
+        return []
     below = [y for x, y in zip(units, cells[1], strict=True) if x]
     return units if _are_numbers(below) and all(is_unit(x) for x in units if x) else []
 
