@@ -189,9 +189,9 @@ def sentences(top: Top, found: Estimate) -> Iterator[str]:
     if hidden := [x for x, y in given.items() if y and x not in known]:
         yield f"this motion does not show {' and '.join(hidden)}"
     if found.decay:
-        yield f"the spin decays by {found.decay:.1%} per unit of time"
+        yield f"the spin decays at the relative rate {found.decay:.3g} per unit of time"
     elif axis.damping * found.span > 10 * same:
-        yield f"the rates across the axis decay by {axis.damping:.1%} per unit of time"
+        yield f"the rates across the axis decay at {axis.damping:.3g} per unit of time"
     if not is_upright:
         x, y, z = axis.up
         yield f"up is ({x:.4f}, {y:.4f}, {z:.4f}) in the space frame"

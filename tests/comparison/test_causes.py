@@ -295,7 +295,7 @@ def test_numbers_of_what_is_in_no_row() -> None:
     engine: Any = mistakes_of(SCENES["general"])["damping .05"][1]
     found = compare(TOP, T, quaternion=dop853(engine, T, 1e-10)[1][:, :4])
     assert (found.verdict, found.cause) == ("drifts", None)
-    assert "the spin decays by 5.0% per unit of time" in (found.numbers or "")
+    assert "the spin decays at the relative rate 0.05 per unit of time" in (found.numbers or "")
     assert (found.a_ratio, found.b_ratio) == pytest.approx((1, 1), abs=5e-3)
     other = TOP.replace(C=0.9 * 0.006, g=1.93 * 9.81, psidot0=9)
     seen = dop853(Body.of(other), T, 1e-10)[1][:, :4]
