@@ -141,7 +141,7 @@ class _File:
             self.empty["psi"] = self.empty["above"]
         Recording(rows, reading).observed(slice(1))  # raises errors of the alignment
         used = used_in(rows, reading)
-        given = {key: rows[key] for key in used}
+        given = {key: x for key, x in rows.items() if key in used}  # in one order
         missing = np.any([self.empty[x] for x in used & self.empty.keys()], axis=0)
         given["missing"] = missing.reshape(-1, 1)
         read = {i for key in used & {*self.quantities} for i in self.quantities[key].columns}
