@@ -103,14 +103,17 @@ class Advice:
         if first == LOST:
             yield from (Reason(Kind.ROWS, x) for x in self.gap())
         is_step = first not in {"", LOST} and shown[first].one.row > 0
-        if not is_step:  # in which rows are right, and read as the others
+        is_noise = self.kinds == {Kind.MACHINE}  # a misreading leaves more
+        if not (is_step or is_noise):
             yield from self._texts(self._parts, self._half_turns)
         if SLOWING & shown.keys() or Kind.MACHINE not in self.kinds:
             yield from self._windows()
         if first != LOST:
             yield from (Reason(Kind.ROWS, x) for x in self.gap())
         if not is_step:
-            yield from self._texts(self._times, self._meanings, self._frames, self._aliased)
+            yield from self._texts(self._times)
+        if not (is_step or is_noise):
+            yield from self._texts(self._meanings, self._frames, self._aliased)
         if Kind.MACHINE not in self.kinds or first == LOST:
             yield from self._last()
 
@@ -231,8 +234,6 @@ class Advice:
     def _parts(self) -> Iterator[str]:
         """Yield the rows without which the fit is good: those before a release, and outliers."""
         recording, found = self.recording, self.outcome
-        if self.kinds == {Kind.MACHINE}:
-            return
         if row := release(recording):
             free = recording.part(slice(row, None))
             if self._is_good(free):
