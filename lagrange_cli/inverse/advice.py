@@ -374,7 +374,8 @@ class Advice:
         if other is None or other.verdict != GOOD:
             return
         gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
-        if gain > max([_SURE_GAP, *[x.score for x in shown.values() if x.one.name != LOST]]):
+        others = [] if next(iter(shown), "") == LOST else [x.score for x in shown.values()]
+        if gain > max([_SURE_GAP, *others]):
             yield f"{lost_text(recording, row, count)}: write the times of the frames"
 
     def _last(self) -> Iterator[Reason]:
