@@ -22,13 +22,13 @@ from ..recordings.frames import alignment_of, in_frames, own_frames, refined, tu
 from ..recordings.misreadings import evenly_timed, misreadings
 from ..recordings.options import Alignment
 from ..top.inputs import BODY, replaced_by
-from .checks import CHANCE
 from .decay import decay_of
 from .known import Known
 from .measured import LEAST_ROWS, Measured, measured
 from .neighbours import DECAY, LOST, SLOWING, lost_text
 from .outcome import GOOD, STEADY, Outcome
 from .reasons import NEEDS_ADVICE, SAY_WHAT_TO_DO, Kind, Reason
+from .residuals import CHANCE
 from .rows import calmness, release, with_gap
 from .search import best_fit
 from .signals import mean_rate

@@ -18,10 +18,10 @@ from ..arithmetic.text import uncertain_text
 from ..errors import LagtopError
 from ..top.inputs import BODY, replaced_by
 from ..top.units import DEGREES, Units
-from .checks import CHANCE
 from .known import Known
 from .measured import Measured
 from .outcome import GOOD, Outcome
+from .residuals import CHANCE
 from .search import best_fit
 
 _SURE = 3.0

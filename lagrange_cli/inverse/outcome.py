@@ -19,12 +19,13 @@ from ..output.notebook import HasRecord
 from ..recordings.doubts import pivot_of
 from ..top.inputs import DECLARED, all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
+from .findings import Finding, Neighbours, neighbours_of
 from .known import Known
 from .measured import Measured
 from .minimum import APART
-from .neighbours import DECAY, Finding, Neighbours, neighbours_of
+from .neighbours import DECAY
 from .reasons import ADVICE, MISFITS, Kind, Reason
+from .residuals import CHANCE, LARGEST, Noise, Residuals, chi2_bounds
 from .rows import repeated
 from .spins import FASTER
 

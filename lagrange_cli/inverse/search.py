@@ -20,7 +20,6 @@ from ..arithmetic.types import Array
 from ..errors import DataError, arg
 from ..top.inputs import all_replaced
 from ..top.units import DEGREES, Units
-from .checks import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .conditions import compare, ties_of
 from .known import START, Known, in_all_forms, scaled_known, time_power
 from .measured import ANGLE_OF, LEAST_ROWS, Measured
@@ -29,6 +28,7 @@ from .nutation import nutating_outcome
 from .outcome import Outcome
 from .problem import Problem, Ties, problem_of
 from .reasons import Kind, Reason
+from .residuals import CHANCE, LARGEST, ROUNDING, Noise, Residuals
 from .signals import (
     Signal,
     mean_rate,

@@ -18,13 +18,13 @@ from ..arithmetic.types import Array
 from ..errors import Message, arg
 from ..top.inputs import TILT, all_replaced, replaced_by
 from ..top.units import bare_name
-from .checks import CHANCE, Noise, Residuals
 from .conditions import Comparison, Vector, compare
 from .known import START, WEIGHT, Known, body_of
 from .measured import ANGLE_OF, Measured
 from .outcome import Number, Outcome
 from .problem import Ties
 from .reasons import Kind, Reason
+from .residuals import CHANCE, Noise, Residuals
 from .signals import Signal
 from .spins import FASTER, reversed_note, slowest_rate
 

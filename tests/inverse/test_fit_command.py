@@ -15,11 +15,11 @@ from conftest import ROOT, Lagtop
 from lagtop import read_scene
 from noisy_recordings import LAB, TRUTH, fitted, recorded, recording_from
 
-from lagrange_cli.inverse.checks import CHANCE, chi2_bounds
 from lagrange_cli.inverse.decay import decay_of, fit_windows
 from lagrange_cli.inverse.known import known_inputs
 from lagrange_cli.inverse.outcome import Number
 from lagrange_cli.inverse.report import fit_report
+from lagrange_cli.inverse.residuals import CHANCE, chi2_bounds
 from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.names import ANGLES
 from lagrange_cli.top.given import gather

@@ -13,9 +13,9 @@ from noisy_recordings import DEGREE, fitted, recorded
 from scipy.optimize import curve_fit
 from scipy.stats import chi2
 
-from lagrange_cli.inverse.checks import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.descent import descended, polished
 from lagrange_cli.inverse.measured import measured
+from lagrange_cli.inverse.residuals import CHANCE, Residuals, chi2_bounds
 from lagrange_cli.inverse.search import best_fit
 from lagrange_cli.inverse.signals import mean_rate, neighbour_noise, step_between
 from lagrange_cli.recordings.recording import recording_of
