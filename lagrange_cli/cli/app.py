@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 import click
 
 from .. import __version__
+from ..arithmetic.text import quoted
 from ..errors import CannotWriteError, LagtopError, Message, UnavailableError
 from ..names import listed, suggestion
 from ..output.terminal import one_line
@@ -164,12 +165,19 @@ class LagtopGroup(click.Group):
                 text = f"cannot write standard output: {text}"
         except LagtopError as error:
             text, code = str(error), error.exit_code
-        except (KeyError, ValueError):
-            if _COMPLETION not in os.environ:
-                raise
-            text, code = f"{_COMPLETION} needs the variables that a shell sets: unset it", 2
+        except (KeyError, ValueError) as error:
+            text, code = _wrong_words(error), 2
         complain(f"Error: {text}")
         sys.exit(code)
+
+
+def _wrong_words(error: KeyError | ValueError) -> str:
+    """Return why a name or a variable of the shell is wrong.  Raises any other error again."""
+    if isinstance(error, UnicodeEncodeError):
+        return f"no file can have the name {quoted(str(error.object))}"
+    if _COMPLETION not in os.environ:
+        raise error
+    return f"{_COMPLETION} needs the variables that a shell sets: unset it"
 
 
 def _check_environment() -> None:

@@ -41,6 +41,8 @@ _WITHOUT_TILT = 3.0
 """Cost of a fit that has to find the tilt."""
 _LEAST_COST = (0.15, 0.5)
 """Cost of a window over that of the whole, at least, with and without a recorded tilt."""
+_HOPELESS = 0.5
+"""Cost of a fit whose motion is far from that of any top, over that of others."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
 _REFINED = 3
@@ -129,10 +131,12 @@ class Advice:
         self.is_early &= cost <= self.left
         if cost > self.left:
             return None
-        self.left -= cost
+        found = None
         with suppress(DataError):
-            return best_fit(recording, self.body if known is None else known, **how)
-        return None
+            found = best_fit(recording, self.body if known is None else known, **how)
+        is_short = found is not None and Kind.MOTION in found.kinds
+        self.left -= cost * (_HOPELESS if is_short else 1.0)
+        return found
 
     def _is_good(self, recording: Measured, known: Known | None = None, also: str = GOOD) -> bool:
         """Return whether a fit is good, and needs no faster spin or reversed angle.

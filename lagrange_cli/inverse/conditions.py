@@ -49,10 +49,12 @@ Estimate = tuple[float, float, float]
 """A number, its standard deviation, and the one if known inputs are exact."""
 
 
+@np.errstate(invalid="ignore")
 def estimates(has: Values, v: Values, *, spins: bool) -> dict[str, Array]:
     """Return what a motion and the other known inputs give for known inputs.
 
-    `has` are the known inputs, and `spins` is true if the spin is recorded.
+    `has` are the known inputs, and `spins` is true if the spin is recorded.  What no top has, such
+    as the root of C < 0, is NaN.
     """
     seen = {x: v[x] for x in (*START, *["r0"] * spins)}
     body = body_of(has, v) | seen

@@ -18,7 +18,7 @@ CODES = {0, 1, 2, 65, 69, 74}
 ODD = [
     *"- 0 -1 1.5 nan inf 1e400 1e-400 480rpm 1(2) 1:2:3 log:1:9:3 1,2 2:1:0 steady comma".split(),
     *"csv table x.toml no/x.csv T_nutation K,k t,axis period 0.8i 2K θ looping-top nosuch".split(),
-    *"T_nutation=0.4 r0=1:2:3 start up=y -- /dev/full \udcff".split(),
+    *"T_nutation=0.4 r0=1:2:3 start up=y -- /dev/full \udcff \ud800".split(),
     *("", "30 deg", "5 Hz", "\x1b[31m\x07", "x" * 3000),
 ]
 
