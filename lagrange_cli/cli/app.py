@@ -172,7 +172,7 @@ class LagtopGroup(click.Group):
 
 
 def _wrong_words(error: KeyError | ValueError) -> str:
-    """Return why a name or a variable of the shell is wrong.  Raises any other error again."""
+    """Return why a file name or a variable of the shell is wrong.  Re-raises any other error."""
     if isinstance(error, UnicodeEncodeError):
         return f"no file can have the name {quoted(str(error.object))}"
     if _COMPLETION not in os.environ:

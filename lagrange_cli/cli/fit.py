@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _parse_sigma(text: str) -> list[tuple[str, float]]:
-    """Return the names and numbers of `theta=0.3,psi=0.5`; the name of a single number is empty."""
+    """Return pairs of name and number of `theta=0.3,psi=0.5`; a single number has the name ""."""
     if not text[:1].isalpha() and text.count(",") < 2:
         return [("", opt.parse_positive(text))]
     parts = [part.partition("=") for part in split_names(text)]
@@ -33,10 +33,11 @@ def _parse_sigma(text: str) -> list[tuple[str, float]]:
 
 
 def _sigma(pairs: list[tuple[str, float]]) -> float | dict[str, float]:
-    """Return a number, or the numbers by name.  Raises LagtopError for a repeated name."""
+    """Return a single number, or the numbers by angle.  Raises LagtopError for a repeated name."""
     names = [name for name, _ in pairs]
     if "" in names and len(names) > 1:
-        raise LagtopError(f"--sigma must be one number or theta=0.3,psi=0.5, got {len(names)}")
+        wanted = "one number or theta=0.3,psi=0.5"
+        raise LagtopError(f"--sigma must be {wanted}, got {len(names)} values")
     if (twice := repeated(names)) is not None:
         raise LagtopError(f"--sigma must name each angle once, got {quoted(twice)} twice")
     return dict(pairs) if names[0] else pairs[0][1]

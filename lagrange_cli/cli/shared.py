@@ -41,7 +41,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     """A parameter type whose value a function parses; errors begin with the option's name."""
 
     def __init__(self, metavar: str, parse: Callable[[str], Any]) -> None:
-        """Take a function of the text."""
+        """Take the name of the value in the help, and the function that parses its text."""
         self.name, self.parse = metavar, parse
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
@@ -277,11 +277,11 @@ def top(
 
 
 def _check_word(word: str | None, inputs: Mapping[str, Value]) -> None:
-    """Raise LagtopError for a word that is no file but a number, a unit, or an input with both."""
+    """Raise LagtopError for a scene that is in fact a number, a unit or an input such as r0=50."""
     if not word or os.path.exists(word):
         return
     if is_decimal(word):
-        wrong = f"an option takes one value, and {word} is no file"
+        wrong = f"{word} is not a file, and an option takes one value"
         raise LagtopError(f"{wrong}: write a list for sweep with commas, as in --r0 40,50")
     if not word[0].isalpha() or set(word) & set("-."):
         return

@@ -75,7 +75,7 @@ def rows_of_value(value: Any, known: Callable[[list[str]], int], depth: int = 2)
     if known([x for x, y in columns.items() if {*map(type, y[:1])} != {dict}]):
         sizes = {x: len(y) for x, y in columns.items()}
         if len({*sizes.values()}) > 1:
-            raise LagtopError(f"columns must be equally long, got {shown(sizes)}")
+            raise LagtopError(f"columns must have equal lengths, got {shown(sizes)}")
         count = {*sizes.values()}.pop()
         columns = {x: y for x, y in lists.items() if len(y) == count}  # texts, too
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -105,7 +105,7 @@ class Table:
 
     @property
     def described(self) -> str:
-        """The headings, or how many columns lack them, for messages."""
+        """The headings, or the number of columns if there are none, for messages."""
         shown = shortened(", ".join(map(repr, self.headings or ())))
         return shown or (f"{self.width} columns without headings" if self.width else "none")
 
@@ -383,9 +383,9 @@ def _layout(
 
 
 def _units_in(rows: Sequence[tuple[int, str]], delimiter: str, count: int) -> list[str]:
-    """Return the units in the first of two rows below headings, empty for a column without.
+    """Return the units in the first of two rows below headings, "" for a column without a unit.
 
-    None are in another row: the second row must have numbers below the units.
+    The list is empty unless the second row has numbers below the units.
     """
     cells = [_split(text.translate(_PLAIN), delimiter) for _, text in rows]
     if len(cells) < 2 or not len(cells[0]) == len(cells[1]) == count or _are_numbers(cells[0]):

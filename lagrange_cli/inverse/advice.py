@@ -36,13 +36,13 @@ from .signals import mean_rate
 _BUDGET = 8.0
 """Cost of the fits that are tried; that of a short recording with a tilt is 1, and takes 0.5 s."""
 _LONG = 1500
-"""Rows that cost as much again, or twice as much if both directions of psi are tried."""
+"""Number of rows that adds 1 to the cost, or 2 if both directions of psi are tried."""
 _WITHOUT_TILT = 3.0
 """Cost of a fit that has to find the tilt."""
 _LEAST_COST = (0.15, 0.5)
-"""Cost of a window over that of the whole, at least, with and without a recorded tilt."""
+"""Least cost of a window over that of the whole, with and without a recorded tilt."""
 _HOPELESS = 0.5
-"""Cost of a fit whose motion is far from that of any top, over that of others."""
+"""Cost of a fit whose motion is far from that of any top, over the cost of other fits."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
 _REFINED = 3
@@ -66,9 +66,9 @@ _FEW_PER_PERIOD = 8.0
 _FEW = 0.15
 """Largest share of rows that are outliers."""
 _ROUNDS = 3
-"""Fits without outliers, each of which may show others."""
+"""Largest number of fits without outliers, each of which may show further outliers."""
 _ALIKE = 0.3
-"""Scatter of an angle without half turns, in radians, from which it has none."""
+"""Largest scatter of an angle, in radians, after its half turns are corrected."""
 _LEAST_TIMES = 0.25
 """Least share of times that differ."""
 _CLOSER = 0.3
@@ -121,7 +121,7 @@ class Advice:
 
     @staticmethod
     def _texts(*each: Callable[[], Iterator[str]]) -> Iterator[Reason]:
-        """Yield the texts of readings."""
+        """Yield each text as the reason that another reading explains the recording."""
         for texts in each:
             yield from (Reason(Kind.READING, x) for x in texts())
 
@@ -236,7 +236,7 @@ class Advice:
             yield f"the nutation is aliased, with {rows:.3g} rows per period: record more than two"
 
     def _parts(self) -> Iterator[str]:
-        """Yield the rows without which the fit is good: those before a release, and outliers."""
+        """Yield which rows to leave out for a good fit: rows before a release, or outliers."""
         recording, found = self.recording, self.outcome
         if row := release(recording):
             free = recording.part(slice(row, None))
@@ -261,9 +261,9 @@ class Advice:
                 return
 
     def _half_turns(self) -> Iterator[str]:
-        """Yield that spin or precession is half a turn off in some rows, where marks look alike.
+        """Yield in how many rows spin or precession is half a turn off, because marks look alike.
 
-        Twice the angle has no such jumps, and shows a mean rate that they have changed.
+        Twice the angle has no such jumps: it shows by how much they have changed the mean rate.
         """
         recording, motion = self.recording, self.outcome.motion(self.recording.t)
         for name in sorted({"phi", "psi"} & {*recording.channels}):
@@ -282,7 +282,7 @@ class Advice:
                 where = (
                     f"{name} is half a turn off in {wrong.sum()} rows, the first at t = {at:.6g}"
                 )
-                yield f"{where}, as if two marks look alike: correct it"
+                yield f"{where}, as if two marks look alike: correct these rows"
 
     def _windows(self) -> Iterator[Reason]:
         """Yield the least number of windows that are all good and show a decay.

@@ -53,8 +53,8 @@ Estimate = tuple[float, float, float]
 def estimates(has: Values, v: Values, *, spins: bool) -> dict[str, Array]:
     """Return what a motion and the other known inputs give for known inputs.
 
-    `has` are the known inputs, and `spins` is true if the spin is recorded.  What no top has, such
-    as the root of C < 0, is NaN.
+    `has` holds the known inputs, and `spins` is true if the spin is recorded.  A value that no top
+    has, such as the root of C < 0, is NaN.
     """
     seen = {x: v[x] for x in (*START, *["r0"] * spins)}
     body = body_of(has, v) | seen

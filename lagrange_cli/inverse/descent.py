@@ -25,9 +25,9 @@ _TRIED = np.array([0.01, 0.3, 10.0])
 GAIN = 1e-3
 """Fall of chi^2 that a Gauss-Newton step promises at most at a minimum (twice the decrement)."""
 _STUCK = 1e-2
-"""Fall of chi^2 by a step, over that promise, below which chi^2 has kinks or is flat."""
+"""Fall of chi^2 by a step over the promised fall, below which chi^2 has kinks or is flat."""
 _SMALL = 0.1
-"""Promised fall for very many numbers."""
+"""Promised fall of chi^2 that ends a fit of very many numbers."""
 Function = Callable[[Array, Any], Array]
 """Residuals of some tries, shape (starts, tries, numbers), from their parameters, shape (starts,
 tries, parameters), and the numbers of the starts."""

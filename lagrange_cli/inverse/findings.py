@@ -1,9 +1,9 @@
-"""What a recording shows of the neighbours of its fitted top, and what those may have changed.
+"""Neighbours of the fitted top that a recording shows, and their effect on the numbers of the fit.
 
 The templates and the residuals are projected off the changes by the parameters of the top.  The
-rest of a template gives its size; the part that is projected off is what it does to the numbers of
-the fit.  If the recording shows some neighbours, forces along the motion that each of the likeliest
-has changed decide the name.
+rest of a template gives its size.  The part that is projected off gives its effect on the numbers
+of the fit.  If the recording shows several neighbours, the likeliest are compared again, each by
+forces along the motion that it has changed.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ lost."""
 _ALIKE = 6.0
 """Difference of chi^2 below which two neighbours explain a recording equally well."""
 _EDGE = 6
-"""Rows at either end that show no step, fewer in a recording without others."""
+"""Rows at either end in which no step is sought; fewer in a recording of few rows."""
 _EXPLAINS = 4.0
 """Fall of chi^2, as a factor, by a neighbour that explains a motion far from that of any top."""
 _LIKELIEST = 5
-"""Neighbours among which the name is chosen, and those that a line lists."""
+"""Number of neighbours among which the name is chosen, and of those that a line lists."""
 _LARGEST = 0.5
-"""Size from which a change is not a small one, so that its template is wrong."""
+"""Size above which a change is not small, so that its template is wrong."""
 _LARGEST_WANDER = 0.1
 """The same of a clock, whose wander resembles strong friction, and much else."""
 _POINTS = 96
@@ -51,7 +51,7 @@ _POINTS = 96
 _PER_TURN = 10
 """Points of the grid in a turn of the spin."""
 _MOST_POINTS = 9000
-"""Points of the grid at most."""
+"""Largest number of points of the grid."""
 _MOST_TRIED = 400_000
 """Spins times points up to which a spin that is not recorded is searched."""
 _POLE = 0.03
@@ -318,7 +318,7 @@ class Neighbours:
 
     @cached_property
     def late(self) -> Finding | None:
-        """Rows that may be lost, which a fit with a gap decides."""
+        """Rows that may be lost, which only a fit with a gap can decide."""
         found = self.steps[-1]
         is_hinted = found.sigmas > _MAYBE and found.effect > 1 and found.size > 0.5
         return found if is_hinted and not found.is_shown else None

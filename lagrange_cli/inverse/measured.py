@@ -166,8 +166,8 @@ class Measured:
         least = min(int(y[x].sum()) for x in rows for y in seen)
         if count > self.t.size or least < LEAST_ROWS:
             least = 0 if count > self.t.size else least
-            wanted = f"{LEAST_ROWS} rows or more in each window"
-            raise LagtopError(f"window must leave {wanted}, got {least}: use fewer", "window")
+            wrong = f"window must leave {LEAST_ROWS} rows or more in each window, got {least}"
+            raise LagtopError(f"{wrong}: use fewer windows", "window")
         return [self.part(x, f"window {i}") for i, x in enumerate(rows, 1)]
 
 

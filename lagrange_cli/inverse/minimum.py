@@ -18,11 +18,11 @@ from .spins import slowest_rate
 MOST_ROWS = 1000
 """Rows of the fit that finds a minimum; its last steps use all rows."""
 _STEPS = 40
-"""Steps of a descent at most."""
+"""Largest number of steps of a descent."""
 _LAST = 10
-"""Steps with all rows at most."""
+"""Largest number of steps with all rows."""
 _NEAR = 0.1
-"""Promised fall of chi^2 that ends a descent if minima are compared."""
+"""Promised fall of chi^2 that ends a descent to a minimum that is only compared with others."""
 _SHAPE_ROWS = 300
 """Rows that show the shape of chi^2."""
 _DEPENDENT = 1e-7
@@ -88,7 +88,7 @@ class Minimum:
         return float(np.linalg.norm(self.spread[names.index(name)])) if name in names else 0.0
 
     def differs(self, other: Minimum) -> bool:
-        """Return whether another minimum is that of another top, in a or b."""
+        """Return whether another minimum is that of another top, by its a or b."""
         return any(
             abs(self.values[x] - other.values[x]) > APART * self.std(x) + 1e-6 * abs(self.values[x])
             for x in ("a", "b")
@@ -130,9 +130,9 @@ def converged(
 ) -> Minimum:
     """Return the minimum near parameters of one start.
 
-    Standard deviations that were not given come from the residuals; they are at least the
-    `floors`.  `factors` widen them for noise that is correlated.  The last steps, also with all
-    rows, and the shape of chi^2 are for a `final` minimum.
+    Standard deviations that were not given come from the residuals, and are at least the
+    `floors`.  `factors` widen them for correlated noise.  Only a `final` minimum has the last
+    steps, also with all rows, and the shape of chi^2.
     """
     few, gain = problem.thinned(MOST_ROWS), GAIN if final else _NEAR
     if is_given := bool(problem.recording.sigma):

@@ -1,7 +1,7 @@
 """Neighbours of a Lagrange top: other machines, and faults of camera, clock and rows.
 
-Each is a template: the change of the motion by a small one, by forces along it or by another
-reading of it.  `findings` measures them in a recording.
+Each neighbour is a template: how it changes the motion if it is small, computed from forces along
+the motion or from another reading of it.  `findings` measures them in a recording.
 """
 
 from __future__ import annotations

@@ -63,8 +63,8 @@ def nutating_outcome(
 ) -> Outcome:
     """Return the result of a fit whose unit of time is `scale` units of the recording.
 
-    Without `is_spin_known` nothing follows from r0.  What is `assumed` of the spin comes first in
-    the notes.  `rivals` are other tops.  All others are those of `Outcome`.
+    Without `is_spin_known`, no number follows from r0.  The notes begin with what is `assumed` of
+    the spin.  `rivals` are other tops.  All other arguments are those of `Outcome`.
     """
     vector, best = found.vector, found.vector.best
     names, motion = best.problem.names, best.problem.angles

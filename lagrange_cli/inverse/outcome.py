@@ -160,7 +160,7 @@ class Outcome(HasRecord):
         return [x for x in found if x.kind < Kind.KNOWN] or found
 
     def wrong(self) -> Iterator[Reason]:
-        """Yield why the fit has failed, what takes longest last."""
+        """Yield the reasons why the fit has failed, the slowest checks last."""
         yield from (x for x in self.reasons if x.kind not in ADVICE)
         for found in (self._of_data, self._misfits, self._of_neighbours):
             yield from found()
@@ -334,7 +334,7 @@ class Outcome(HasRecord):
         return sum(x.y.size * 2 * math.log((x.rms + 1e-12) / (y.rms + 1e-12)) for x, y in pairs)
 
     def differs(self, other: Outcome) -> bool:
-        """Return whether another fit is that of another top, of whatever direction of psi."""
+        """Return whether another fit is that of another top, whatever the direction of psi."""
         one, two = self.in_radians, other.in_radians
         pairs = [(one[x], two[x]) for x in ("a", "b") if x in one.keys() & two.keys()]
         return any(abs(abs(x.value) - abs(y.value)) > APART * x.std for x, y in pairs)

@@ -43,7 +43,7 @@ _ROWS_PER_LAG = 2.0
 _LAGS = 12
 """Longest reach of noise that correlates, in rows."""
 _LOBE = 0.5
-"""Negative correlation, over that of neighbours, that an oscillation makes, and no fit of noise."""
+"""Negative correlation, over that of neighbours, that only an oscillation makes, not noise."""
 _WITHIN = 0.75
 """Largest 95 % quantile of the residuals of an encoder, over its step."""
 
@@ -86,7 +86,7 @@ class Residuals:
 
     @property
     def is_white(self) -> bool:
-        """Whether they are as small as the noise of neighbours, and do not correlate with them."""
+        """Whether residuals are as small as the noise of neighbouring rows, and not correlated."""
         return self.rms <= _AS_NOISY * self.neighbours and self.widening() == 1
 
     @property
@@ -146,8 +146,8 @@ class Residuals:
     def widening(self, chance: float = CHANCE) -> float:
         """Return the factor of standard deviations for correlated noise, at least 1.
 
-        Its square is 1 + 2 times the sum of the correlations while they fall and are above 0, as
-        the later ones are noise.  It is (1 + r)/(1 - r) if they are r^n.
+        Its square is 1 + 2 times the sum of the correlations as long as they fall and are above
+        0; later correlations are noise.  The square is (1 + r)/(1 - r) if they are r^n.
         """
         if not self.is_coarse and abs(self.autocorrelation) <= _bound(self.y.size, chance):
             return 1.0
@@ -199,7 +199,7 @@ class Residuals:
     def filter_beats(self, basis: Array) -> bool:
         """Return whether a filter explains the residuals better than some columns of a basis.
 
-        It has one parameter, by which the likelihood grows by (1 - r^2)^(-n/2).
+        The filter has one parameter, r, which multiplies the likelihood by (1 - r^2)^(-n/2).
         """
         count, r = self.y.size, self.autocorrelation
         parts = (np.linalg.qr(basis)[0].T @ self.y) ** 2 / float(self.y @ self.y)

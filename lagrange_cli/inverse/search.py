@@ -70,10 +70,9 @@ def best_fit(
 ) -> Outcome:
     """Return the fit of one recording, with numbers in some `units`.
 
-    `chance` is the probability that noise fails a test.  The `frequency` of the nutation is by
-    default that of the harmonics of the recording, which are of a slower one if it is aliased, or
-    if rows are lost.
-    Raises DataError for a recording that cannot be fitted.
+    `chance` is the probability that noise fails a test.  By default, the `frequency` of the
+    nutation comes from the harmonics of the recording.  It is too low if the nutation is aliased,
+    or if rows are lost.  Raises DataError for a recording that cannot be fitted.
     """
     for alone, needed in (("theta", "psidot0"), ("psi", "theta0")):
         if recording.angles.keys() == {alone} and needed not in all_replaced(known):
@@ -229,7 +228,7 @@ def _nutation(
 
 
 def _another_top(values: Mapping[str, float]) -> Reason:
-    """Return that a top with other values of a, b and r0 explains the recording as well."""
+    """Return the reason that a top with other a, b and r0 explains the recording as well."""
     shown = ", ".join(f"{x} = {values[x]:.6g}" for x in ("a", "b", "r0") if x in values)
     return Reason(Kind.OPEN, f"another top explains the recording as well: {shown}")
 
@@ -245,7 +244,7 @@ def _refined(best: Minimum, floors: Array, turn: float) -> Minimum:
 def _minima(
     recording: Measured, floors: Array, known: Mapping[str, float], ties: Ties | None
 ) -> list[Minimum]:
-    """Return minima of a recording.  None is refined if no motion of a top matches."""
+    """Return the minima of a recording, or one rough minimum if no motion of a top matches."""
     signals = signals_in(recording)
     noise = recording.sigma or noise_of(signals, 1.0, recording)
     sizes = np.maximum([noise[x] for x in recording.channels], floors)
@@ -270,7 +269,7 @@ def _minima(
 def _likely(minima: Sequence[Minimum], turn: float) -> list[Minimum]:
     """Return the minima that explain a recording about as well as the best, which comes first.
 
-    Those that differ by whole turns of the spin per row are alike: each has the slowest spin.
+    Minima that differ by whole turns of the spin per row are alike: each gets the slowest spin.
     """
     slow = [slowest(x, turn) for x in minima]
     levels = [x.badness() for x in slow]

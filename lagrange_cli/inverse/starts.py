@@ -88,7 +88,7 @@ def starts(signals: Mapping[str, Signal], tilt: float | None) -> Array:
 
 @cache
 def _tops_on_grid(signs: tuple[int, int]) -> tuple[Array, Array, Array, Array]:
-    """Return the tops of all pairs of turning points, which are those of any recording."""
+    """Return the tops of all pairs of turning points, which are the same for every recording."""
     least, greatest = _grid()
     return nutating(least[:, np.newaxis], greatest[:, np.newaxis], 1.0, _HEIGHTS, signs)
 

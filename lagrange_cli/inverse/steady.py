@@ -210,7 +210,7 @@ def _numbers(
     is_sure: bool,
     has_ratio: bool,
 ) -> dict[str, Number]:
-    """Return the means, r0 if it is derived, and what follows from b/a if this is determined."""
+    """Return the means, r0 if it is derived, and the numbers from b/a if it is determined."""
     vector = found.vector
 
     def computed(at: Array) -> dict[str, Array]:

@@ -292,7 +292,7 @@ def _roots(search: Search, values: Array, off: Array) -> list[list[float]]:
 
 
 def _bisected(f: Callable[[float], Any], low: float, high: float) -> tuple[float, float]:
-    """Return neighbouring numbers between which f changes."""
+    """Return two neighbouring doubles between which f changes."""
     first = f(low)
     while low < (middle := low + (high - low) / 2) < high:
         low, high = (middle, high) if f(middle) == first else (low, middle)

@@ -161,7 +161,7 @@ def power_of_time(unit: str) -> int:
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a unit, or one that needs another name, such as Hz."""
+    """Return whether a text is a unit, also if the unit needs another name, as Hz does."""
     try:
         return bool(unit_of_text(text))
     except LagtopError:
