@@ -98,25 +98,26 @@ class Advice:
     def reasons(self) -> Iterator[Reason]:
         """Yield advice, the best first."""
         if Kind.OPEN in self.kinds:
-            yield from (Reason(Kind.READING, x) for x in self._names())
+            yield from self._texts(self._names)
         if self.kinds & SAY_WHAT_TO_DO or not self.kinds & NEEDS_ADVICE:
             return
         shown, first = self.outcome.shown, next(iter(self.outcome.shown), "")
-        if first == LOST:
-            yield from (Reason(Kind.ROWS, x) for x in self.gap())
-        is_step = first not in {"", LOST} and shown[first].one.row > 0
-        is_noise = self.kinds == {Kind.MACHINE}  # a misreading leaves more
-        if not (is_step or is_noise):
+        is_lost, is_machine = first == LOST, Kind.MACHINE in self.kinds
+        is_step = not is_lost and first != "" and shown[first].one.row > 0
+        is_read = not is_step and self.kinds != {Kind.MACHINE}  # a misreading leaves more
+        if is_lost:
+            yield from self.gap()
+        if is_read:
             yield from self._texts(self._parts, self._half_turns)
-        if SLOWING & shown.keys() or Kind.MACHINE not in self.kinds:
+        if SLOWING & shown.keys() or not is_machine:
             yield from self._windows()
-        if first != LOST:
-            yield from (Reason(Kind.ROWS, x) for x in self.gap())
+        if not is_lost:
+            yield from self.gap()
         if not is_step:
             yield from self._texts(self._times)
-        if not (is_step or is_noise):
+        if is_read:
             yield from self._texts(self._meanings, self._frames, self._aliased)
-        if Kind.MACHINE not in self.kinds or first == LOST:
+        if is_lost or not is_machine:
             yield from self._last()
 
     @staticmethod
@@ -126,7 +127,9 @@ class Advice:
             yield from (Reason(Kind.READING, x) for x in texts())
 
     def _fit(self, recording: Measured, known: Known | None = None, **how: Any) -> Outcome | None:
-        """Return a fit, None if it costs too much, or if it needs other inputs."""
+        """Return a fit, None if it costs too much, or if it needs more numbers or inputs."""
+        if not recording.has_numbers:
+            return None
         cost = self.cost * max(recording.t.size / self.recording.t.size, self.least)
         self.is_early &= cost <= self.left
         if cost > self.left:
@@ -174,7 +177,7 @@ class Advice:
         A reading of an axis is worth a fit if harmonics leave no more noise.
         """
         recording, is_angles = self.recording, self.recording.kind == "angles"
-        calm = calmness(recording.thinned(_ROWS)) + _AS_CALM
+        calm = 0.0 if is_angles else calmness(recording.thinned(_ROWS)) + _AS_CALM
         for row in misreadings(recording.source):
             other = None
             if row.kind in {"attitude", "frame"}:
@@ -367,7 +370,7 @@ class Advice:
             best = max(best, (float(sums.max()), int(row), int(count)))
         return best[1:] if best[0] > _LEAVES**2 else (0, 0)
 
-    def gap(self) -> Iterator[str]:
+    def gap(self) -> Iterator[Reason]:
         """Yield how many rows are lost, and where, if a fit with this gap is good and better."""
         recording, shown = self.recording, self.outcome.shown
         late = self.outcome.late or shown.get(LOST)
@@ -380,7 +383,8 @@ class Advice:
         gain = float(self.outcome.deviance(other)) - 2 * math.log(3 * recording.t.size)
         others = [] if next(iter(shown), "") == LOST else [x.score for x in shown.values()]
         if gain > max([_SURE_GAP, *others]):
-            yield f"{lost_text(recording, row, count)}: write the times of the frames"
+            text = f"{lost_text(recording, row, count)}: write the times of the frames"
+            yield Reason(Kind.ROWS, text)
 
     def _last(self) -> Iterator[Reason]:
         """Yield where the recording leaves the motion of its first half, and what to check."""

@@ -45,7 +45,7 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     advice = Advice(recording, known, outcome, again)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
-        found = (Reason(Kind.ROWS, x) for x in (advice.gap() if outcome.late else ()))
+        found = advice.gap() if outcome.late else ()
     return replace(outcome, reasons=[*outcome.reasons, *found])
 
 

@@ -31,6 +31,8 @@ about the axis."""
 ANGLE_OF = {"theta": "theta", "psi": "psi", "phi": "phi", "across": "psi", "along": "phi"}
 """The angle that shows the noise of a channel."""
 LEAST_ROWS = 12
+_LEAST_NUMBERS = 4
+"""Numbers of an angle at least."""
 _BEYOND = 0.2
 """Largest tilt beyond a pole that counts as noise, in radians."""
 _UNEVEN = 0.05
@@ -85,6 +87,11 @@ class Measured:
         known = {name: np.isfinite(x) for name, x in self.angles.items()}
         whole = np.all([*known.values()], axis=0)
         return np.stack([known[x] if self.kind == "angles" else whole for x in self.channels])
+
+    @property
+    def has_numbers(self) -> bool:
+        """Whether each angle has numbers enough, as those of a part may not."""
+        return all(np.isfinite(x).sum() >= _LEAST_NUMBERS for x in self.angles.values())
 
     @property
     def frame(self) -> float:
@@ -212,8 +219,8 @@ def _angles(seen: Observed, recording: Recording) -> tuple[str, dict[str, Array]
 def _checked(name: str, values: Array) -> Array | None:
     """Return an angle with NaN for missing numbers, None if all are missing."""
     known = np.isfinite(values)
-    if 0 < known.sum() < 4:
-        raise DataError(f"{name} must have 4 numbers or more, got {known.sum()}")
+    if 0 < known.sum() < _LEAST_NUMBERS:
+        raise DataError(f"{name} must have {_LEAST_NUMBERS} numbers or more, got {known.sum()}")
     kept = np.where(known, values, np.nan)
     if name != "theta":
         return within_half_turn(kept) if known.any() else None

@@ -174,7 +174,7 @@ def shaped(found: Minimum) -> Minimum:
 
         floor, chi2 = descended(rest, ends[bent], 20)
         grown[bent] = chi2 / 4
-        stds = np.linalg.norm(found.spread[:2], axis=1) + 1e-300
+        stds = np.linalg.norm(found.spread[:2], axis=1) + 1e-100
         is_aside = bool(np.any(np.abs(floor - ends[bent])[:, :2] / stds > APART))
     least = grown.reshape(2, -1).min(axis=0, initial=np.inf)
     factors = np.sqrt(1 / np.clip(least, 1e-2, 1))

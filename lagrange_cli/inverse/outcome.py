@@ -325,7 +325,7 @@ class Outcome(HasRecord):
         for name, rest in self.residuals.items():
             size = self.noise[name].range
             usual = float(np.median(np.abs(rest.y))) + 1e-12
-            found += math.log(usual / (size if math.isfinite(size) else 1.0) + 1e-12)
+            found += math.log(usual / (size if 0 < size < math.inf else 1.0) + 1e-12)
         return found
 
     def deviance(self, other: Outcome) -> float:

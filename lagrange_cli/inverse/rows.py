@@ -53,7 +53,7 @@ def frequency_of_parts(recording: Measured) -> float:
     if (middle := recording.t.size // 2) <= LEAST_ROWS:
         return 0.0
     halves = (recording.part(x) for x in (slice(middle), slice(middle, None)))
-    found = [oscillation_in(signals_in(x)) for x in halves]
+    found = [oscillation_in(signals_in(x)) for x in halves if x.has_numbers]
     return max((x for x, is_visible in found if is_visible), default=0.0)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..arithmetic.types import Array
-from .measured import ANGLE_OF, Measured, are_whole
+from .measured import ANGLE_OF, LEAST_ROWS, Measured, are_whole
 
 _MOST_ROWS = 700
 """Rows of the search for a frequency."""
@@ -133,7 +133,8 @@ def oscillation_in(signals: Mapping[str, Signal]) -> tuple[float, bool]:
     fast = []
     for x in signals.values():
         part = (x.t >= begin) & (x.t <= end)
-        fast.append(Signal(x.t[part] - begin, x.y[part], x.grows))
+        if part.sum() >= LEAST_ROWS:
+            fast.append(Signal(x.t[part] - begin, x.y[part], x.grows))
     found = _best_frequency(fast)
     if not found[1] > max(best[1], 0):
         return best[0], best[1] > 0

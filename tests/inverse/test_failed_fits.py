@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -121,3 +122,12 @@ def test_an_attitude_whose_spin_is_wrong_fails() -> None:
     outcome = best_fit(recording_from(t, quaternion=wxyz(turns)), {})
     assert outcome.verdict == "failed"
     assert any("residuals of along" in x for x in outcome.failures())
+
+
+@pytest.mark.parametrize("kept", [slice(0), slice(-5, None)], ids=["constant", "few numbers"])
+def test_a_recording_with_an_odd_column_fails_in_words(kept: slice) -> None:
+    """The range of a constant angle is 0; half of the rows may have no number of an angle."""
+    t, seen = recorded("theta", "psi", rows=30, seed=8)
+    odd = np.full(30, math.nan if seen["psi"][kept].size else 0.5)
+    odd[kept] = seen["psi"][kept]
+    assert fitted(t, seen | {"psi": odd}).failures()
