@@ -196,4 +196,6 @@ def slowest(found: Minimum, turn: float) -> Minimum:
 
 def largest(problem: Problem, x: Array) -> Any:
     """Return the largest rms residual of a channel at parameters of one start, in radians."""
-    return np.sqrt(np.nanmean(problem.residuals(x[:, np.newaxis]) ** 2, axis=-1)).max()
+    squares = problem.residuals(x[:, np.newaxis]) ** 2
+    count = np.maximum(np.isfinite(squares).sum(axis=-1), 1)  # rows of a sparse angle may have none
+    return np.sqrt(np.nansum(squares, axis=-1) / count).max()
