@@ -34,15 +34,15 @@ from .search import best_fit
 from .signals import mean_rate
 
 _BUDGET = 8.0
-"""Cost of the fits that are tried; that of a short recording with a tilt is 1, and takes 0.5 s."""
+"""Cost of the fits that are tried; a fit of the cost 1 takes about 0.5 s."""
+_SHORT = 0.7
+"""Cost of a fit of few rows with a tilt."""
 _LONG = 1500
 """Number of rows that adds 1 to the cost, or 2 if both directions of psi are tried."""
 _WITHOUT_TILT = 3.0
 """Cost of a fit that has to find the tilt."""
 _LEAST_COST = (0.15, 0.5)
 """Least cost of a window over that of the whole, with and without a recorded tilt."""
-_HOPELESS = 0.5
-"""Cost of a fit whose motion is far from that of any top, over the cost of other fits."""
 _ROWS = 250
 """Rows at which frames are compared before a fit."""
 _REFINED = 3
@@ -89,7 +89,7 @@ class Advice:
             self.body = dict(known)
         has_no_tilt = "theta" not in recording.angles
         tries_both = recording.kind == "angles" and {"phi", "psi"} <= recording.angles.keys()
-        self.cost = 1 + recording.t.size / _LONG * (1 + tries_both)
+        self.cost = _SHORT + recording.t.size / _LONG * (1 + tries_both)
         self.cost *= _WITHOUT_TILT if has_no_tilt else 1.0
         self.least = _LEAST_COST[has_no_tilt]
         self.left, self.is_early = _BUDGET - again * self.cost, True
@@ -134,12 +134,10 @@ class Advice:
         self.is_early &= cost <= self.left
         if cost > self.left:
             return None
-        found = None
+        self.left -= cost
         with suppress(DataError):
-            found = best_fit(recording, self.body if known is None else known, **how)
-        is_short = found is not None and Kind.MOTION in found.kinds
-        self.left -= cost * (_HOPELESS if is_short else 1.0)
-        return found
+            return best_fit(recording, self.body if known is None else known, **how)
+        return None
 
     def _is_good(self, recording: Measured, known: Known | None = None, also: str = GOOD) -> bool:
         """Return whether a fit is good, and needs no faster spin or reversed angle.
