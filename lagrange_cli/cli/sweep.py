@@ -13,7 +13,8 @@ from ..arithmetic.text import quoted
 from ..errors import LagtopError, UnavailableError
 from ..file_bytes import shown_path
 from ..names import listed
-from ..output.formats import FORMATS, format_of
+from ..output.formats import FORMATS
+from ..output.formats.base import format_of
 from ..output.terminal import with_progress
 from ..top.scenes import is_scene_file
 from ..top.units import Units

@@ -34,19 +34,27 @@ def fit_recording(recording: Measured, known: Known, units: Units = DEGREES) -> 
     Raises DataError for a recording that cannot be fitted.
     """
     outcome, again = best_fit(recording, known, units=units), 0
-    for kinds in ({Kind.OPEN, Kind.MOTION}, {Kind.MOTION}):
-        if not kinds & outcome.kinds:
-            break
-        is_open = Kind.OPEN in kinds  # else a half of the frequency may have been found
-        frequency = frequency_of_parts(recording) if is_open else 2 * outcome.frequency
-        if frequency and abs(math.log(frequency / outcome.frequency)) > _OTHER:
-            other, again = best_fit(recording, known, units=units, frequency=frequency), again + 1
-            outcome = min(outcome, other, key=lambda x: (x.is_open, x.noisiness))
+    if {Kind.OPEN, Kind.MOTION} & outcome.kinds:
+        outcome, again = _also_at(frequency_of_parts(recording), outcome, recording, known)
+    if Kind.MOTION in outcome.kinds:  # half of the frequency may have been found
+        outcome, more = _also_at(2 * outcome.frequency, outcome, recording, known)
+        again += more
     advice = Advice(recording, known, outcome, again)
     found: Iterable[Reason] = islice(advice.reasons(), 1)
     if not outcome.failed:
         found = advice.gap() if outcome.late else ()
-    return replace(outcome, reasons=[*outcome.reasons, *found])
+    hints = [*found]
+    return replace(outcome, reasons=[*outcome.reasons, *hints]) if hints else outcome
+
+
+def _also_at(
+    frequency: float, outcome: Outcome, recording: Measured, known: Known
+) -> tuple[Outcome, int]:
+    """Return the better of a fit and one at another frequency, and the number of further fits."""
+    if not frequency or abs(math.log(frequency / outcome.frequency)) <= _OTHER:
+        return outcome, 0
+    other = best_fit(recording, known, units=outcome.units, frequency=frequency)
+    return min(outcome, other, key=lambda x: (x.is_open, x.noisiness)), 1
 
 
 def fit(

@@ -17,12 +17,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from ..errors import CannotWriteError
 from .document import Document, rows_grid, texts_of
-from .formats import format_of
+from .formats.base import Format, format_of
 from .terminal import is_screen, printable, width_of
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .formats.base import Format
 
 MOST_ROWS, MOST_UPRIGHT = 1000, 50
 """Most rows of a table on a terminal, and if its columns must become lines, by default."""
@@ -41,8 +40,7 @@ class Output(NamedTuple):
     @property
     def format(self) -> Format:
         """The format, imported when it is used."""
-        found: Format = format_of(self.fmt)
-        return found
+        return format_of(self.fmt)
 
     def document(self, document: Document) -> None:
         """Write a document.  Raises LagtopError if the format cannot hold it."""

@@ -22,7 +22,8 @@ from ..arithmetic.text import shortened
 from ..errors import CannotWriteError, LagtopError, arg
 from ..file_bytes import read_bytes
 from ..output.destination import opened
-from ..output.formats import FORMATS, format_of
+from ..output.formats import FORMATS
+from ..output.formats.base import format_of
 from .plan import NumberedBlock, Part, Sweep
 
 

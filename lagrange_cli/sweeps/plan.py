@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import LagtopError, Message, SomeFailedError, marked
 from ..files.tops import Product, TopsFile, read_tops
 from ..names import RADIUS
-from ..output.formats import format_of
+from ..output.formats.base import format_of
 from ..solver.keys import shown_keys
 from ..top.given import Given, gather
 from ..top.inputs import (

@@ -66,8 +66,9 @@ class Given(NamedTuple):
     @property
     def body(self) -> Mapping[str, Real]:
         """The body of the worked example, in SI or CGS."""
-        in_si = {x: Fraction(y) * conversion(x, BODY_UNITS[x])[0] for x, y in BODY.items()}
-        return in_si if self.si else BODY
+        if not self.si:
+            return BODY
+        return {x: Fraction(y) * conversion(x, BODY_UNITS[x])[0] for x, y in BODY.items()}
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.

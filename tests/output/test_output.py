@@ -30,7 +30,7 @@ from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.output import terminal
 from lagrange_cli.output.destination import Output, opened
 from lagrange_cli.output.document import Document, Grid, record_document, record_page, rows_grid
-from lagrange_cli.output.formats import format_of
+from lagrange_cli.output.formats.base import format_of
 from lagrange_cli.output.formats.table import FORMAT, drawn
 from lagrange_cli.output.notebook import HasRecord
 from lagrange_cli.output.report import Field, Report

@@ -7,8 +7,7 @@ the help, the pages and the refusal of other names take it.  Its module has a `F
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 
 class Row(NamedTuple):
@@ -31,9 +30,3 @@ WITH_COMMAS = {"csv": "csv.WITH_COMMAS"}
 """The forms of formats with decimal commas, which --decimal chooses."""
 PICTURES, FILMS = ("png", "svg", "pdf"), ("gif", "mp4")
 """The extensions of pictures and films, which the plotting package writes."""
-
-
-def format_of(name: str) -> Any:
-    """Return the `base.Format` with a name, or a form of one such as `csv.WITH_COMMAS`."""
-    module, _, form = name.partition(".")
-    return getattr(import_module(f".{module}", __package__), form or "FORMAT")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from importlib import import_module
 from io import BytesIO
 from typing import Any, BinaryIO
 
 from ...errors import LagtopError
 from ...names import listed
 from ..document import Document, Page, rows_grid, texts_of
-from . import FORMATS, format_of
+from . import FORMATS
 
 Columns = Sequence[Any]
 """Arrays of numbers, each of one or several columns, and lists of texts and JSON values."""
@@ -64,6 +65,13 @@ class Format:
     def part(self, names: Sequence[str], number: int, block: Any) -> bytes:
         """Return the file of part `number` of a sweep, whose files in order are the whole."""
         return self.header(names) * (not number) + bytes(block)
+
+
+def format_of(name: str) -> Format:
+    """Return the format with a name, or a form of one such as `csv.WITH_COMMAS`."""
+    module, _, form = name.partition(".")
+    found: Format = getattr(import_module(f".{module}", __package__), form or "FORMAT")
+    return found
 
 
 class ForPeople(Format):
